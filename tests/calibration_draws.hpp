@@ -111,7 +111,7 @@ inline ScenarioResults results(double claimed) {
     scenario.poses = steps + 1;
     ScenarioResults results{scenario, status_columns(), figures(), {}, trials};
     ArmResults arm;
-    for (const Column& column : results.columns) arm.columns.emplace_back(trials, column.fill);
+    for (const Column& column : results.columns) arm.columns.in_memory().emplace_back(trials, column.fill);
     for (const Series& figure : results.all_series)
         arm.totals.series.push_back(
             {std::vector<ExactSum>(steps),

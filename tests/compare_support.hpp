@@ -5,6 +5,7 @@
 #include "worlds/deformable/keys.hpp"
 #include <numeric>
 
+#include "either_way.hpp"
 #include "matched.hpp"
 #include "of_scenarios.hpp"
 
@@ -32,7 +33,14 @@ inline DeformableSettings matched() {
 inline CompareReport compared(const std::vector<StudyFile>& files, const std::string& arms = "") {
     std::vector<std::string> paths;
     for (const StudyFile& file : files) paths.push_back(file.path);
-    return compare_studies(files, arms.empty() ? std::nullopt : std::optional(read_arms(arms, paths)));
+    const auto compare = [&](const std::vector<StudyFile>& either) {
+        return compare_studies(either, arms.empty() ? std::nullopt : std::optional(read_arms(arms, paths)));
+    };
+    std::vector<StudyFile> read = files;
+    for (StudyFile& file : read) file.study = read_back(file.study);
+    const CompareReport in_memory = compare(files), of_files = compare(read);
+    CHECK(renderings(of_files) == renderings(in_memory));
+    return of_files;
 }
 
 inline const PairedComparison& of(const ComparedPair& pair, int column) {

@@ -64,14 +64,15 @@ inline Study made_up_study(const std::vector<DeformableSettings>& scenarios = {s
     for (ScenarioResults& results : study.scenarios) {
         extend(results, 5);
         for (ArmResults& arm : results.arms) {
+            std::vector<std::vector<double>>& columns = arm.columns.in_memory();
             for (std::size_t c = 0; c < results.columns.size(); ++c)
                 for (std::size_t i = 0; i < 5; ++i) {
                     const bool real = results.columns[c].type == ColumnType::real;
-                    arm.columns[c][i] = real ? std::sqrt(static_cast<double>(7 * c + i)) : static_cast<double>(c + i);
+                    columns[c][i] = real ? std::sqrt(static_cast<double>(7 * c + i)) : static_cast<double>(c + i);
                 }
-            arm.columns[column_status] = {0, 2, 0, 1, 0};
-            arm.columns[column_trace_P][1] = -NAN;
-            arm.columns[column_unseen][1] = -1;
+            columns[column_status] = {0, 2, 0, 1, 0};
+            columns[column_trace_P][1] = -NAN;
+            columns[column_unseen][1] = -1;
             std::size_t next = 0;
             for (std::size_t f = 0; f < results.all_series.size(); ++f) {
                 const bool integer = results.all_series[f].integer;

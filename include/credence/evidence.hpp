@@ -153,7 +153,8 @@ struct Evidence {
     std::int64_t trials = 0;                   ///< over which the evidence is computed
     std::int64_t all_trials = 0;
     std::int64_t left_out = 0;                 ///< trials that failed and are left out
-    std::int64_t lost = 0;                     ///< trials that are lost and left out, too [columns.hpp]
+    std::int64_t lost = 0;                     ///< trials that are lost [columns.hpp], and left out, too
+    bool lost_are_judged = false;              ///< they are more than half, and not left out
     std::vector<WorstTrial> lost_trials;       ///< of the detailed ones, ten at most, the worst first
     int steps = 0;
     std::vector<GroupEvidence> groups;         ///< the whole state first

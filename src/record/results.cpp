@@ -47,7 +47,7 @@ ArmResults empty_arm(const ScenarioResults& results) {
     const auto lags = static_cast<std::size_t>(lag_count(results.scenario.poses));
     ArmResults arm;
     arm.name = "record";
-    for (const Column& column : results.columns) arm.columns.emplace_back(trials, column.fill);
+    for (const Column& column : results.columns) arm.columns.in_memory().emplace_back(trials, column.fill);
     for (const Series& series : results.all_series) {
         const std::size_t counts = series.role == SeriesRole::nees ? steps * coverage_level_count : 0;
         arm.totals.series.push_back({std::vector<ExactSum>(steps),

@@ -198,7 +198,7 @@ void RecordTotals::end_trial(std::int64_t trial) {
         const std::vector<double> moments = moments_.moments();
         std::copy(moments.begin(), moments.end(), arm().moments.begin() + trial * std::ssize(moments));
     }
-    if (counts(status_)) {
+    if (lost_ == LostTrials::counted ? !failed(status_) : counts(status_)) {
         gaps_.add(trial, shape_.steps_of(trial), present_, [this](std::size_t k) { return series(0, k) / shape_.n; });
         add_totals();
         if (planner_ != nullptr)
@@ -245,13 +245,12 @@ void RecordTotals::add_columns(std::int64_t trial) {
             row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_group(shape_));
         }
         row[RecordColumn::nees_ratio] = over_steps(0) / count(0) / shape_.n;
-        if (lost_ == LostTrials::set_aside && row[RecordColumn::nees_ratio] > lost_nees_ratio)
-            note_lost(trial, row[RecordColumn::nees_ratio]);
+        if (row[RecordColumn::nees_ratio] > lost_nees_ratio) note_lost(trial, row[RecordColumn::nees_ratio]);
         row[RecordColumn::nis_ratio] =
             record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;
     }
     row[RecordColumn::status] = static_cast<double>(status_);
-    for (std::size_t c = 0; c < record_column_count; ++c) arm().columns[c][size(trial)] = row[c];
+    for (std::size_t c = 0; c < record_column_count; ++c) arm().columns.in_memory()[c][size(trial)] = row[c];
 }
 
 /// Names the step at which the NEES of a lost trial is largest.
@@ -351,8 +350,9 @@ Record RecordTotals::finish() {
     finish_rounding();
     record_.gaps = gaps_.finish();
     arm().totals.trials = trial_totals(record_.results.columns, 1, size(shape_.trials),
-                                       [&](std::size_t, std::size_t c) { return arm().columns[c].data(); })
+                                       [&](std::size_t, std::size_t c) { return arm().columns.in_memory()[c].data(); })
                               .front();
+    arm().totals.trials.lost_count = lost_ == LostTrials::counted;
     if (innovations_left_out_ > 0)
         record_.results.not_judged.push_back("The innovations of " + std::to_string(innovations_left_out_) +
                                              " steps are left out: their covariance cannot be inverted to 0.5 %.");

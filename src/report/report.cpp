@@ -48,10 +48,9 @@ ColumnReport column_report(const ScenarioResults& results, const ArmResults& arm
     return report;
 }
 
-/// `lost_fail`: lost trials are not judged with the others, but count with those that failed.
-std::optional<FailureCause> cause_of(const ScenarioResults& results, const ArmResults& arm, bool lost_fail) {
+std::optional<FailureCause> cause_of(const ScenarioResults& results, const ArmResults& arm) {
     const std::vector<std::int64_t>& counts = arm.totals.trials.statuses;
-    const auto first = counts.begin() + static_cast<int>(Status::lost) + (lost_fail ? 0 : 1);
+    const auto first = counts.begin() + static_cast<int>(Status::lost);
     const auto most = std::max_element(first, counts.end());
     if (*most == 0) return std::nullopt;
     FailureCause cause{static_cast<Status>(most - counts.begin()), *most, -1, 0,
@@ -88,7 +87,7 @@ ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, Evid
     leave_out_rounded(report.evidence, limits);
     report.failed = report.evidence.left_out;
     report.lost = report.evidence.lost;
-    report.cause = cause_of(results, arm, report.lost > 0);
+    report.cause = cause_of(results, arm);
     for (std::size_t c = 0; c < results.columns.size(); ++c)
         if (is_reported(results.columns[c])) report.columns.push_back(column_report(results, arm, c, root_seed));
     if (!report.evidence.groups.empty() && is_rounded(report.evidence.groups.front(), limits))

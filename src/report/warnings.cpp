@@ -23,8 +23,9 @@ void add_troubles(const Report& report, std::vector<std::string>& lines) {
         const std::string trial = std::to_string(trouble.trial);
         lines.push_back("trial " + trial + ", step " + std::to_string(trouble.step + 1) + " ([" + trial + ", " +
                         std::to_string(trouble.step) + "] in the file): " + trouble.what +
-                        (failed(trouble.status) ? "; the trial is left out of the numbers."
-                                                : "; the trial is left out of the verdict."));
+                        (failed(trouble.status)                          ? "; the trial is left out of the numbers."
+                         : report.arms.front().evidence.lost_are_judged ? "."
+                                                                         : "; the trial is left out of the verdict."));
     }
     std::int64_t failed = 0;
     for (const ArmReport& arm : report.arms) failed += arm.failed_trials();
@@ -53,6 +54,7 @@ void add_swept_failures(const Report& report, const std::set<std::string>& swept
 
 /// What becomes of lost trials, and which they are.
 std::string lost_text(const Evidence& evidence) {
+    if (evidence.lost_are_judged) return "judged all the same, because they are more than half";
     std::vector<std::string> trials;
     for (const WorstTrial& one : evidence.lost_trials)
         trials.push_back(std::to_string(one.trial) + " (most at step " + std::to_string(one.step) + ")");

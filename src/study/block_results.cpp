@@ -76,7 +76,7 @@ ScenarioResults results_without_totals(const Scenario& scenario, Keep keep) {
     ScenarioResults results{scenario, world.columns(scenario), world.all_series(scenario), {}, 0, {}, keep};
     name_arms(results);
     for (ArmResults& arm : results.arms)
-        if (keep == Keep::trials) arm.columns.resize(results.columns.size());
+        if (keep == Keep::trials) arm.columns.in_memory().resize(results.columns.size());
     return results;
 }
 
@@ -122,10 +122,10 @@ void store_columns(ScenarioResults& results, const Block& block) {
     for (std::size_t a = 0; a < results.arms.size(); ++a) {
         ArmResults& arm = results.arms[a];
         if (!block.arms[a].nees.empty()) store_details(block.arms[a], row, trials, arm);
-        if (arm.kept || arm.columns.empty()) continue;
+        if (arm.columns.kept() || arm.columns.empty()) continue;
         for (std::size_t c = 0; c < results.columns.size(); ++c)
             std::copy_n(block.arms[a].columns.begin() + static_cast<std::ptrdiff_t>(c * trials), trials,
-                        arm.columns[c].begin() + row);
+                        arm.columns.in_memory()[c].begin() + row);
     }
 }
 

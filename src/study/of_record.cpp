@@ -15,7 +15,7 @@ Study study_of(Record record) {
     results.scenario.name = "record";
     results.blocks = BlockRanges::below(block_count(results.trials));
     results.columns.erase(results.columns.begin() + RecordColumn::unseen);
-    std::vector<std::vector<double>>& columns = results.arms.front().columns;
+    std::vector<std::vector<double>>& columns = results.arms.front().columns.in_memory();
     columns.erase(columns.begin() + RecordColumn::unseen);
     std::vector<ExactMoments>& totals = results.arms.front().totals.trials.columns;
     totals.erase(totals.begin() + RecordColumn::unseen);

@@ -158,9 +158,11 @@ void bring_into_memory(ScenarioResults& results) {
     load_totals(results);
     results.kept_totals.reset();
     for (ArmResults& arm : results.arms) {
-        if (!arm.kept) continue;
-        for (std::size_t c = 0; c < results.columns.size(); ++c) arm.columns.push_back(column_values(results, arm, c));
-        arm.kept.reset();
+        if (!arm.columns.kept()) continue;
+        ArmColumns columns;
+        for (std::size_t c = 0; c < results.columns.size(); ++c)
+            columns.in_memory().push_back(column_values(results, arm, c));
+        arm.columns = std::move(columns);
     }
 }
 

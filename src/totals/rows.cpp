@@ -7,6 +7,8 @@
 #include "base/nan.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <utility>
 
 namespace credence {
 
@@ -30,14 +32,24 @@ void move_rows(std::vector<double>& values, const std::vector<Move>& moves, std:
 
 }  // namespace
 
-std::vector<double> column_values(const ArmResults& arm, std::size_t column, std::int64_t first, std::int64_t count) {
-    if (arm.kept) return arm.kept->values(column, first, count);
-    const auto from = arm.columns[column].begin() + first;
+std::vector<double> ArmColumns::values(std::size_t column, std::int64_t first, std::int64_t count) const {
+    if (kept_) return kept_->values(column, first, count);
+    const auto from = in_memory_[column].begin() + first;
     return {from, from + count};
 }
 
+void ArmColumns::keep(std::shared_ptr<const KeptColumns> kept) {
+    in_memory_.clear();
+    kept_ = std::move(kept);
+}
+
+std::vector<std::vector<double>>& ArmColumns::in_memory() {
+    if (kept_) throw std::logic_error("the columns are in a file");
+    return in_memory_;
+}
+
 std::vector<double> column_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column) {
-    return column_values(arm, column, 0, results.trials);
+    return arm.columns.values(column, 0, results.trials);
 }
 
 std::vector<double> figure_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column) {
@@ -92,8 +104,8 @@ std::optional<std::int64_t> first_row(const ScenarioResults& results, std::int64
 void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trials) {
     std::vector<Move> moves, detailed_moves;
     const std::int64_t most = detailed_trials(results.steps(), results.state_size()) / block_size;
-    const bool in_memory = std::any_of(results.arms.begin(), results.arms.end(),
-                                       [](const ArmResults& arm) { return !arm.kept && !arm.columns.empty(); });
+    const bool in_memory = std::ranges::any_of(
+        results.arms, [](const ArmResults& arm) { return !arm.columns.kept() && !arm.columns.empty(); });
     std::int64_t rows = 0;
     for (const std::int64_t block : blocks) {
         if (!in_memory && block >= most) break;  // the block has no row
@@ -109,8 +121,8 @@ void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trial
     results.blocks = std::move(blocks);
     const std::int64_t detailed = results.detailed();
     for (ArmResults& arm : results.arms) {
-        if (!arm.kept)
-            for (std::vector<double>& column : arm.columns) move_rows(column, moves, results.trials, 1);
+        if (!arm.columns.kept())
+            for (std::vector<double>& column : arm.columns.in_memory()) move_rows(column, moves, results.trials, 1);
         if (!has_totals(results)) continue;
         visit_details(
             results, [&](auto& values, std::int64_t width) { move_rows(values, detailed_moves, detailed, width); },

@@ -48,7 +48,7 @@ std::int64_t TrialTotals::trials() const {
 }
 
 std::int64_t TrialTotals::counted() const {
-    return statuses[static_cast<std::size_t>(Status::completed)];
+    return statuses[static_cast<std::size_t>(Status::completed)] + (lost_count ? lost() : 0);
 }
 
 std::int64_t TrialTotals::lost() const { return statuses[static_cast<std::size_t>(Status::lost)]; }

@@ -93,13 +93,14 @@ std::string power_of(const Sizes& sizes) {
 /// Errors and P in degrees and radians.
 std::string degrees_of(const Sizes& sizes) {
     std::vector<std::string> large, small;
+    const auto distance = [&](std::size_t component, double logarithm) {
+        return mean_size(sizes, {component},
+                         [&](auto j, auto k) { return sizes.error[j][k] - sizes.variance[j][k] - logarithm; });
+    };
     for (std::size_t j = 0; j < sizes.components(); ++j) {
-        double ratio = 0, count = 0;
-        for (std::size_t k = 0; k < sizes.steps(); ++k)
-            if (const double r = sizes.error[j][k] - sizes.variance[j][k]; std::isfinite(r)) ratio += r, ++count;
         const double degrees = 2 * std::log(180 / std::numbers::pi);
-        if (std::abs(ratio / count - degrees) < sizes.tolerance) large.push_back(sizes.component[j]);
-        if (std::abs(ratio / count + degrees) < sizes.tolerance) small.push_back(sizes.component[j]);
+        if (distance(j, degrees) < sizes.tolerance) large.push_back(sizes.component[j]);
+        if (distance(j, -degrees) < sizes.tolerance) small.push_back(sizes.component[j]);
     }
     if (!large.empty())
         return "errors of " + first_of(large) + " are 57 times P's sigma: is the error in degrees, and P in rad²?";
@@ -222,6 +223,29 @@ std::string few_of(const Evidence& evidence, const Limits& limits) {
 
 }  // namespace
 
+std::string divergence_of(const Evidence& evidence) {
+    if (evidence.groups.empty()) return {};
+    const GroupEvidence& state = evidence.groups.front();
+    if (!(state.run.mean > lost_nees_ratio) || state.step.size() < 2) return {};
+    constexpr double many = 20;  // runs: one of them may have small errors at first by chance
+    const bool are_many = state.step.front().count >= many;
+    const auto some = std::max<std::ptrdiff_t>(1, std::ssize(state.step) / 5);
+    const auto mean = [](auto from, auto to) {
+        return std::accumulate(from, to, 0.0, [](double sum, const Moments& step) { return sum + step.mean; }) /
+               static_cast<double>(to - from);
+    };
+    const double first = mean(state.step.begin(), state.step.begin() + (are_many ? 1 : some)),
+                 last = mean(state.step.end() - some, state.step.end());
+    if (!(last > (are_many ? 3 : 10) * first)) return {};
+    char text[300];
+    std::snprintf(text, sizeof text,
+                  "the filter diverges, NEES/dim is %.2g at first and %.2g at last: is a Jacobian wrong, or does P not "
+                  "know of a drift or of process noise? Finite differences show a wrong one (in C++ jacobian_mismatch "
+                  "of credence/filters.hpp)",
+                  first, last);
+    return text;
+}
+
 std::vector<std::string> causes_of(const Evidence& evidence, const Limits& limits) {
     const Sizes sizes = evidence.segments.count ? Sizes{} : sizes_of(evidence);
     std::vector<std::string> causes{few_of(evidence, limits), placeholders_of(sizes)};
@@ -229,7 +253,9 @@ std::vector<std::string> causes_of(const Evidence& evidence, const Limits& limit
         causes.push_back(cause(sizes));
         if (!causes.back().empty()) break;
     }
-    causes.push_back(offset_of(evidence, sizes));
+    const bool is_explained = !causes.back().empty();
+    if (!is_explained) causes.push_back(divergence_of(evidence));
+    if (is_explained || causes.back().empty()) causes.push_back(offset_of(evidence, sizes));
     if (std::ranges::all_of(causes, &std::string::empty)) causes.push_back(trend_of(evidence, limits));
     std::erase(causes, "");
     return causes;

@@ -91,7 +91,11 @@ Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
 
 /// The verdict on the trials that did not fail.
 Consistency judge_survivors(const Evidence& evidence, const Limits& limits) {
-    if (evidence.trials == 1 && !evidence.segments.count) return judge_single_run(evidence, limits);
+    if (evidence.trials == 1 && !evidence.segments.count) {
+        Consistency verdict = judge_single_run(evidence, limits);
+        if (std::string diverges = divergence_of(evidence); !diverges.empty()) verdict.hints.push_back(diverges);
+        return verdict;
+    }
     Consistency verdict = judge_trials(evidence, limits);
     if (evidence.groups.empty() || evidence.trials == 0) return verdict;
     caution_about_whiteness(evidence, verdict);
@@ -201,7 +205,8 @@ bool too_many_failed(std::int64_t failed, std::int64_t trials, double share) {
 
 Consistency judge(const Evidence& evidence, const Limits& limits) {
     Consistency verdict = judge_survivors(evidence, limits);
-    if (too_many_failed(evidence.failed_trials(), evidence.all_trials, limits.failed)) {
+    const std::int64_t failed = evidence.lost_are_judged ? evidence.left_out : evidence.failed_trials();
+    if (too_many_failed(failed, evidence.all_trials, limits.failed)) {
         verdict.verdict = Verdict::failed;
         verdict.reasons.clear();
         verdict.trials_needed = {};

@@ -217,18 +217,32 @@ Moments moments_of_trials(const TrialMoments& trials, const Value& value) {
 }
 
 /// Where more than half of the trials are lost, the filter as a whole is judged, by the detailed trials: the totals are
-/// of the others alone.
-void count_lost(Evidence& evidence) {
+/// of the others alone, and the whole state is what the details have by step.
+void judge_lost(const ScenarioResults& results, const ArmResults& arm, Evidence& evidence) {
     if (!evidence.moments) return;
     const TrialMoments& trials = *evidence.moments;
     evidence.trials += evidence.lost;
-    evidence.lost = 0;
+    evidence.lost_are_judged = true;
+    for (BiasEvidence& bias : evidence.bias) bias.mean_square.clear();  // its P is that of the others
     for (int g = 0; g < trials.groups; ++g)
         evidence.groups[static_cast<std::size_t>(g)].run =
             moments_of_trials(trials, [&](std::size_t i) { return trials.X(i, g); });
     for (int j = 0; j < trials.components; ++j)
         evidence.bias[static_cast<std::size_t>(j)].run =
             moments_of_trials(trials, [&](std::size_t i) { return trials.z(i, j); });
+    GroupEvidence& state = evidence.groups.front();
+    const std::size_t steps = state.step.size();
+    std::vector<double> sums;
+    state.anees = {};
+    for (std::size_t k = 0; k < steps; ++k) {
+        std::vector<double> ratios;
+        for (std::size_t at = k; at < arm.nees.size(); at += steps)
+            if (!std::isnan(arm.nees[at])) ratios.push_back(arm.nees[at] / results.state_size());
+        state.step[k] = moments_of(exact_moments(ratios));
+        state.anees.degrees.push_back(state.step[k].count * state.dimension);
+        sums.push_back(state.step[k].mean * state.anees.degrees.back());
+    }
+    fill_bands(sums, state.anees);
 }
 
 DistributionEvidence distribution_evidence(const ScenarioResults& results, const ArmResults& arm) {
@@ -278,7 +292,8 @@ void count_trials(const ScenarioResults& results, const ArmResults& arm, Evidenc
     const std::vector<std::int64_t>& statuses = arm.totals.trials.statuses;
     for (std::size_t status = 0; status < statuses.size(); ++status)
         if (failed(static_cast<Status>(status))) evidence.left_out += statuses[status];
-    evidence.lost = statuses[static_cast<std::size_t>(Status::lost)];
+    evidence.lost = arm.totals.trials.lost();
+    evidence.lost_are_judged = arm.totals.trials.lost_count && evidence.lost > 0;
 }
 
 }  // namespace
@@ -324,13 +339,13 @@ Evidence evidence_of_counted(const ScenarioResults& results, const ArmResults& a
 
 Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     const TrialTotals& trials = arm.totals.trials;
-    if (trials.lost() == 0) return evidence_of_counted(results, arm);
+    if (trials.lost() == 0 || trials.lost_count) return evidence_of_counted(results, arm);
     if (trials.lost() > trials.counted()) {
         Evidence evidence = evidence_of_counted(results, arm);
-        count_lost(evidence);
+        judge_lost(results, arm, evidence);
         return evidence;
     }
-    ArmResults others{arm.name, arm.columns, nullptr, arm.totals, arm.errors, arm.nees, arm.moments};
+    ArmResults others = arm;
     const std::vector<WorstTrial> lost = set_lost_aside(results, others);
     Evidence evidence = evidence_of_counted(results, others);
     evidence.lost_trials = lost;

@@ -12,13 +12,14 @@ namespace credence {
 
 namespace {
 
-/// All directions are off by nearly one factor: it is beyond three margins, and their spread is small beside it.
+/// All directions are off by nearly one factor: it is beyond three margins, and they differ little, and less than it.
 void hint_at_scale(const Consistency& verdict, std::vector<std::string>& hints) {
     const std::vector<double>& spectrum = verdict.directions.spectrum;
     if (spectrum.size() < 2 || !(spectrum.front() > 0)) return;
     const double middle = std::log(spectrum.front() * spectrum.back()) / 2;
     const double half_spread = std::log(spectrum.back() / spectrum.front()) / 2;
-    if (std::abs(middle) > std::log1p(3 * verdict.limits.direction) && half_spread < std::abs(middle) / 3)
+    if (std::abs(middle) > std::log1p(3 * verdict.limits.direction) &&
+        half_spread < std::min(std::abs(middle) / 3, std::log(2)))
         hints.push_back(formatted("every direction is off by a factor of about %.2g: a scale?", std::exp(middle)));
 }
 

@@ -24,19 +24,25 @@ struct CalibratedTrial {
 
 /// Of the trials that count, by log det P; empty where trials or the columns are not kept.
 std::vector<CalibratedTrial> trials_by_size(const ScenarioResults& results, const ArmResults& arm) {
-    const auto column = [&](const std::string& name) -> const std::vector<double>* {
-        for (std::size_t c = 0; c < arm.columns.size(); ++c)
-            if (results.columns[c].name == name) return &arm.columns[c];
-        return nullptr;
+    const auto column = [&](const char* name) {
+        return static_cast<std::size_t>(std::ranges::find(results.columns, name, &Column::name) -
+                                        results.columns.begin());
     };
-    const std::vector<double>*score = column("log_score"), *nees = column("nees_ratio"), *status = column("status");
+    const std::size_t of_score = column("log_score"), of_nees = column("nees_ratio"), of_status = column("status");
     std::vector<CalibratedTrial> trials;
-    if (score == nullptr || nees == nullptr || status == nullptr) return trials;
+    if (arm.columns.empty() || std::max({of_score, of_nees, of_status}) == results.columns.size()) return trials;
     const double n = results.state_size();
-    for (std::size_t i = 0; i < score->size(); ++i)
-        if (counts(static_cast<Status>(static_cast<int>((*status)[i]))) && std::isfinite((*score)[i]))
-            // But for n log 2 pi, and without the rounding of NEES, which would sort trials of the same P by it.
-            trials.push_back({std::round(1e6 * (2 * (*score)[i] - n * (*nees)[i])) / 1e6, (*nees)[i]});
+    constexpr std::int64_t rows_at_once = std::int64_t{1} << 16;  // the columns of all trials may exceed the memory
+    for (std::int64_t row = 0; row < results.trials; row += rows_at_once) {
+        const std::int64_t rows = std::min(rows_at_once, results.trials - row);
+        const std::vector<double> score = arm.columns.values(of_score, row, rows),
+                                  nees = arm.columns.values(of_nees, row, rows),
+                                  status = arm.columns.values(of_status, row, rows);
+        for (std::size_t i = 0; i < score.size(); ++i)
+            if (counts(static_cast<Status>(static_cast<int>(status[i]))) && std::isfinite(score[i]))
+                // But for n log 2 pi, and without the rounding of NEES, which would sort trials of the same P by it.
+                trials.push_back({std::round(1e6 * (2 * score[i] - n * nees[i])) / 1e6, nees[i]});
+    }
     std::ranges::stable_sort(trials, {}, &CalibratedTrial::log_det);
     return trials;
 }

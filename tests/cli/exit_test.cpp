@@ -1,13 +1,7 @@
 // A world of one's own that ends the process.
 
-#include <credence/own_world.hpp>
-#include <credence/program.hpp>
-
 #include "catch.hpp"
-#include "program.hpp"
-
-#include <sys/wait.h>
-#include <unistd.h>
+#include "own_program.hpp"
 
 #include <cstdlib>
 
@@ -38,22 +32,13 @@ struct Leaver {
     }
 };
 
-/// A program with that world, with its messages in `err`; its exit code.
+const bool leaver_added = (add_own_world<Leaver>(), true);
+
+/// Runs the program with that world.
 int program_with_leaver(const Workplace& here, const std::string& forks) {
+    REQUIRE(leaver_added);
     here.write("leaver.ini", "[scenario]\nworld = leaver\nposes = 3\n[exit]\nforks = " + forks + "\n");
-    const std::string scenario = here.path("leaver.ini"), results = here.path("x.h5"), err = here.path("err");
-    const pid_t child = fork();
-    if (child == 0) {
-        if (freopen(err.c_str(), "w", stderr) == nullptr) _exit(9);
-        add_own_world<Leaver>();
-        std::vector<std::string> words{"build/leaver", "run", scenario, "-o", results, "--trials=3", "--quiet"};
-        std::vector<char*> pointers;
-        for (std::string& word : words) pointers.push_back(word.data());
-        _exit(program(static_cast<int>(pointers.size()), pointers.data()));
-    }
-    int status = 0;
-    waitpid(child, &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return test::own_program(here, "run leaver.ini -o x.h5 --trials=3 --quiet");
 }
 
 }  // namespace
@@ -62,7 +47,7 @@ TEST_CASE("cli: a world that calls exit(0) ends the run with 1 and a message") {
     const Workplace here;
     CHECK(program_with_leaver(here, "0") == 1);
     CHECK_THAT(here.read("err"),
-               Contains("leaver run: cannot finish (exit() was called in the middle of it, by a world"));
+               Contains("own run: cannot finish (exit() was called in the middle of it, by a world"));
 }
 
 TEST_CASE("cli: a process that a world forks may exit") {

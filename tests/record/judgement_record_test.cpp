@@ -58,7 +58,7 @@ void check_columns(const ScenarioResults& results, const Json& expected) {
     for (std::size_t c = 0; c < results.columns.size(); ++c) {
         const std::string& name = results.columns[c].name;
         CAPTURE(name);
-        const std::vector<double>& column = results.arms.front().columns[c];
+        const std::vector<double>& column = results.arms.front().columns.in_memory()[c];
         if (name == "unseen")
             CHECK(std::all_of(column.begin(), column.end(), [](double one) { return std::isnan(one); }));
         else check_agree(column, expected[name]);
@@ -136,7 +136,7 @@ TEST_CASE("record: runs of declared lengths, a step missing within a run, rows n
     const Record record = check_reference("ragged");
     const ArmResults& arm = record.results.arms.front();
     for (std::size_t i = 0; i < arm.nees.size(); ++i) CHECK(std::isnan(arm.nees[i]) == std::isnan(arm.errors[3 * i]));
-    CHECK(std::isnan(arm.columns[column_nis_ratio][3]));
+    CHECK(std::isnan(arm.columns.in_memory()[column_nis_ratio][3]));
 }
 
 TEST_CASE("record: singular and indefinite covariances fail their trial and are named by trial and step") {
@@ -203,7 +203,7 @@ TEST_CASE("record: a run of very many steps has distances, and no cells") {
     CHECK(arm.totals.cells.empty());
     CHECK(arm.totals.distribution_distance.size() == 5000);
     check_agrees(arm.totals.distribution_distance.back(), 0.68268949213708585);  // P(|Z| < 1), SciPy
-    CHECK(arm.columns[column_nees_ratio][0] == 1);
+    CHECK(arm.columns.in_memory()[column_nees_ratio][0] == 1);
     CHECK_FALSE(record.has_innovations);
     CHECK(arm.totals.products.count == std::vector<std::int64_t>(10, 0));
 }

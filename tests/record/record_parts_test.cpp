@@ -93,7 +93,7 @@ TEST_CASE("record: of variances each component is judged by itself") {
         check_close(totals_named(record, name), totals_named(joint, name));
     CHECK(totals_named(record, "nees").runs == 0);
     CHECK(totals_named(record, "nees_pair").runs == 0);
-    CHECK(std::isnan(record.results.arms.front().columns[column_nees_ratio][0]));
+    CHECK(std::isnan(record.results.arms.front().columns.in_memory()[column_nees_ratio][0]));
     CHECK(record.results.not_judged ==
           std::vector<std::string>{
               "The record has variances only: each component is judged by itself, and no correlation "

@@ -95,7 +95,7 @@ TEST_CASE("record: the whole state has at each step the dimension that it has th
     CHECK(relative(all.run.mean, run.mean) < 1e-11);
     CHECK(relative(all.run.standard_error, run.standard_error) < 1e-9);
     for (std::size_t trial = 0; trial < all_trials; ++trial)
-        CHECK(relative(arm.columns[column_nees_ratio][trial], run_means[trial]) < 1e-11);
+        CHECK(relative(arm.columns.in_memory()[column_nees_ratio][trial], run_means[trial]) < 1e-11);
 }
 
 TEST_CASE("record: a group is judged at the steps where it is whole") {

@@ -19,10 +19,10 @@ namespace {
 void fail(ScenarioResults& results, std::size_t arm, std::size_t first, std::size_t count) {
     for (std::size_t i = first; i < first + count; ++i) {
         std::vector<double> values;
-        for (const auto& column : results.arms[arm].columns) values.push_back(column[i]);
+        for (const auto& column : results.arms[arm].columns.in_memory()) values.push_back(column[i]);
         values[column_status] = static_cast<double>(Status::non_finite);
         fill_failed(results.columns, values.data());
-        for (std::size_t c = 0; c < values.size(); ++c) results.arms[arm].columns[c][i] = values[c];
+        for (std::size_t c = 0; c < values.size(); ++c) results.arms[arm].columns.in_memory()[c][i] = values[c];
     }
 }
 
@@ -39,7 +39,7 @@ TEST_CASE("compare: every number is computed from the columns") {
         CHECK(pair.pairs() == 300);
         REQUIRE(pair.comparison.columns.size() == 8);
         for (std::size_t c = 0; c < 8; ++c) {
-            const std::vector<double>&a = arms[1].columns[c], &b = arms[0].columns[c];
+            const std::vector<double>&a = arms[1].columns.in_memory()[c], &b = arms[0].columns.in_memory()[c];
             std::vector<double> difference(300);
             double below = 0, above = 0;
             for (std::size_t i = 0; i < 300; ++i) difference[i] = a[i] - b[i], below += a[i]<b[i], above += a[i]> b[i];
@@ -134,8 +134,7 @@ TEST_CASE("compare: a difference that is the same in every trial has no spread, 
     const double d = 0.1;  // the sum of 41 of them, rounded, over 41 is another number
     for (std::size_t arm = 0; arm < 2; ++arm)
         for (std::size_t c = 0; c < 8; ++c)
-            std::fill(study.scenarios[0].arms[arm].columns[c].begin(), study.scenarios[0].arms[arm].columns[c].end(),
-                      arm == 1 ? d : 0);
+            std::ranges::fill(study.scenarios[0].arms[arm].columns.in_memory()[c], arm == 1 ? d : 0);
     const CompareReport report = compared({{"constant.h5", study}});
     CHECK(of(report.pairs[0], 0).difference.mean == d);
     CHECK(of(report.pairs[0], 0).difference.standard_deviation == 0);
@@ -170,7 +169,7 @@ TEST_CASE("compare: trials that failed in one arm are no pairs, and the text say
     Study study = small_study(1, 300, 1);
     fail(study.scenarios[0], 0, 0, 20);
     fail(study.scenarios[0], 1, 10, 20);
-    study.scenarios[0].arms[0].columns[column_status][100] = static_cast<double>(Status::lost);
+    study.scenarios[0].arms[0].columns.in_memory()[column_status][100] = static_cast<double>(Status::lost);
     recount(study.scenarios[0]);
     const CompareReport report = compared({{"failed.h5", study}});
     const ComparedPair& pair = report.pairs[0];
@@ -196,8 +195,8 @@ TEST_CASE("compare: trials that failed in one arm are no pairs, and the text say
 TEST_CASE("compare: what is not shown is said so, and ranks against the mean are not hidden") {
     Study study = new_study({matched()}, 1);
     extend(study.scenarios[0], 400);
-    auto& planned = study.scenarios[0].arms[1].columns[column_trace_P];
-    auto& fixed = study.scenarios[0].arms[0].columns[column_trace_P];
+    auto& planned = study.scenarios[0].arms[1].columns.in_memory()[column_trace_P];
+    auto& fixed = study.scenarios[0].arms[0].columns.in_memory()[column_trace_P];
     const auto conclusion = [&](auto difference) {
         for (std::size_t i = 0; i < 400; ++i) fixed[i] = 1, planned[i] = 1 + difference(i);
         const CompareReport report = compared({{"made-up.h5", study}});

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.hpp"
+#include "either_way.hpp"
 #include "study_support.hpp"
 
 namespace credence::test::failure_test {
@@ -17,7 +18,7 @@ namespace {
 /// 40 of 100 trials of the first arm are not finite, 30 of them at pose 3; 10 have no covariance.
 Study failing_study() {
     Study study = small_study(1, 100, 1);
-    std::vector<std::vector<double>>& columns = study.scenarios.front().arms.front().columns;
+    std::vector<std::vector<double>>& columns = study.scenarios.front().arms.front().columns.in_memory();
     for (std::size_t i = 0; i < 50; ++i) {
         columns[column_status][i] =
             static_cast<double>(i < 40 ? Status::non_finite : Status::covariance_not_positive_definite);
@@ -30,7 +31,7 @@ Study failing_study() {
 }  // namespace
 
 TEST_CASE("report: where trials failed it says with which status, and at which pose most of them did") {
-    const Report report = make_report(failing_study(), 0.05);
+    const Report report = report_either_way(failing_study(), 0.05);
     const std::string says = "50 of 100 trials failed, more than 1 %: 40 with status non_finite, 30 of these at pose 3";
     CHECK_THAT(report_text(report), Contains(says));
     CHECK_THAT(report_html(report, {"study.h5", {}, "test"}), Contains(says));

@@ -1,6 +1,7 @@
 // NEES in another chart of the error is shown beside the Euclidean one, and no verdict uses it.
 
 #include "catch.hpp"
+#include "either_way.hpp"
 #include "study_support.hpp"
 
 #include <credence/report.hpp>
@@ -74,7 +75,7 @@ TEST_CASE("charts: no verdict, finding or caution depends on them") {
 }
 
 TEST_CASE("charts: text, JSON and CSV show them; scenarios without another estimator have none") {
-    const Report report = make_report(two_charts(), 0.05);
+    const Report report = report_either_way(two_charts(), 0.05);
     CHECK_THAT(report_text(report), Contains("NEES/dim in the invariant chart, not judged: all "));
     const Json arm = Json::parse(report_json(report)).front();
     REQUIRE(arm["other_charts"].size() == 2);
@@ -83,7 +84,7 @@ TEST_CASE("charts: text, JSON and CSV show them; scenarios without another estim
     CHECK(arm["other_charts"][1]["nees_ratio"].get<double>() == report.arms[0].evidence.charts[1].run.mean);
     CHECK_THAT(report_csv(report), Contains(",nees_per_dimension_invariant:all,") &&
                                        Contains(",nees_per_dimension_invariant:pose:3,"));
-    const Report plain = make_report(small_study(1, 20, 1), 0.05);
+    const Report plain = report_either_way(small_study(1, 20, 1), 0.05);
     CHECK_THAT(report_text(plain), !Contains("invariant"));
     CHECK_THAT(report_csv(plain), !Contains("invariant"));
     CHECK(!Json::parse(report_json(plain)).front().contains("other_charts"));

@@ -1,6 +1,7 @@
 // The page has the same values as the JSON, whatever names a file contains, and loads nothing.
 
 #include "catch.hpp"
+#include "either_way.hpp"
 #include "program.hpp"
 #include "study_support.hpp"
 
@@ -28,7 +29,7 @@ Report titled_report(const std::string& title) {
     scenario.published.trace_P = {{"greedy.kf", 0.1234}};
     Study study = new_study({scenario}, 1);
     run_study(study, {300, 1, {}});
-    return make_report(study, 0.05);
+    return report_either_way(study, 0.05);
 }
 
 const Report& small_report() {
@@ -43,7 +44,7 @@ Report charts_report() {
     scenario.arms.estimators = {Estimator::ekf, Estimator::riekf};
     Study study = new_study({scenario}, 1);
     run_study(study, {300, 1, {}});
-    return make_report(study, 0.05);
+    return report_either_way(study, 0.05);
 }
 
 std::string page_of(const Report& report) {
@@ -169,10 +170,10 @@ TEST_CASE("page: the same report gives the same bytes, and arms without a trial 
             const std::string name = arm.name;
             arm = empty_results(results.scenario).arms.front();
             arm.name = name;
-            arm.columns.assign(results.columns.size(),
-                               std::vector<double>(300, std::numeric_limits<double>::quiet_NaN()));
-            arm.columns[column_status].assign(300, static_cast<double>(Status::non_finite));
-            arm.columns[column_status_pose].assign(300, 3);
+            arm.columns.in_memory().assign(results.columns.size(),
+                                           std::vector<double>(300, std::numeric_limits<double>::quiet_NaN()));
+            arm.columns.in_memory()[column_status].assign(300, static_cast<double>(Status::non_finite));
+            arm.columns.in_memory()[column_status_pose].assign(300, 3);
             arm.errors.assign(300 * 7 * static_cast<std::size_t>(results.state_size()),
                               std::numeric_limits<double>::quiet_NaN());
             arm.nees.assign(300 * 7, std::numeric_limits<double>::quiet_NaN());

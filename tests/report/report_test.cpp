@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "catch.hpp"
+#include "either_way.hpp"
 #include "study_support.hpp"
 
 namespace credence::test::report_test {
@@ -22,11 +23,11 @@ Study with_failures() {
     ArmResults& arm = study.scenarios.front().arms.front();
     for (std::size_t i = 0; i < 30; ++i) {
         std::vector<double> values;
-        for (const auto& column : arm.columns) values.push_back(column[i]);
+        for (const auto& column : arm.columns.in_memory()) values.push_back(column[i]);
         values[column_status] = static_cast<double>(Status::non_finite);
         values[column_status_pose] = 3;
         fill_failed(study.scenarios.front().columns, values.data());
-        for (std::size_t c = 0; c < values.size(); ++c) arm.columns[c][i] = values[c];
+        for (std::size_t c = 0; c < values.size(); ++c) arm.columns.in_memory()[c][i] = values[c];
     }
     recount(study.scenarios.front());
     return study;
@@ -36,11 +37,11 @@ Study with_failures() {
 
 TEST_CASE("report: its means are the means of the columns") {
     const Study study = small_study(1, 300, 1);
-    const Report report = make_report(study, 0.05);
+    const Report report = report_either_way(study, 0.05);
     REQUIRE(report.arms.size() == 4);
     REQUIRE(report.pairs.size() == 2);
-    const auto& planned = study.scenarios[1].arms[1].columns[column_trace_P];
-    const auto& fixed = study.scenarios[1].arms[0].columns[column_trace_P];
+    const auto& planned = study.scenarios[1].arms[1].columns.in_memory()[column_trace_P];
+    const auto& fixed = study.scenarios[1].arms[0].columns.in_memory()[column_trace_P];
     double mean = 0, difference = 0;
     for (std::size_t i = 0; i < 300; ++i) mean += planned[i] / 300, difference += (planned[i] - fixed[i]) / 300;
     CHECK(report.arms[3].columns[column_trace_P].summary.mean == Approx(mean).epsilon(1e-13));
@@ -50,21 +51,21 @@ TEST_CASE("report: its means are the means of the columns") {
 
 TEST_CASE("report: failed trials are counted and shown, and columns are summarised without them") {
     const Study study = with_failures();
-    const Report report = make_report(study, 0.05);
+    const Report report = report_either_way(study, 0.05);
     CHECK(report.arms.front().trials == 300);
     CHECK(report.arms.front().failed == 30);
     CHECK(report.arms.front().columns[column_unseen].summary.count == 270);
     CHECK(report.arms.front().columns[column_unseen].summary.mean >= 0);  // the fill, -1, is not a value
     CHECK(report.pairs.front().columns[column_trace_P].paired.pairs == 270);
     CHECK(report_text(report).find("WARNING: 30 of 300 trials of heading-straight/fixed.ekf failed") == 0);
-    CHECK(report_text(make_report(small_study(1, 300, 1), 0.05)).find("WARNING") == std::string::npos);
+    CHECK(report_text(report_either_way(small_study(1, 300, 1), 0.05)).find("WARNING") == std::string::npos);
 }
 
 TEST_CASE("report: lost trials stay in the columns and are named") {
     Study study = small_study(1, 300, 1);
-    study.scenarios.front().arms.front().columns[column_status][7] = static_cast<double>(Status::lost);
+    study.scenarios.front().arms.front().columns.in_memory()[column_status][7] = static_cast<double>(Status::lost);
     recount(study.scenarios.front());
-    const Report report = make_report(study, 0.05);
+    const Report report = report_either_way(study, 0.05);
     CHECK(report.arms.front().lost == 1);
     CHECK(report.arms.front().failed == 0);
     CHECK(report.arms.front().columns.front().summary.count == 300);
@@ -76,8 +77,8 @@ TEST_CASE("report: a published value is shown at its percentile") {
     scenarios.front().published.unseen = {{"greedy.ekf", 2}};
     Study study = new_study(scenarios, 1);
     run_study(study, {300, 1, {}});
-    const Report report = make_report(study, 0.05);
-    const auto& unseen = study.scenarios.front().arms[1].columns[column_unseen];
+    const Report report = report_either_way(study, 0.05);
+    const auto& unseen = study.scenarios.front().arms[1].columns.in_memory()[column_unseen];
     double below = 0, equal = 0;
     for (const double value : unseen) below += value < 2, equal += value == 2;
     const ColumnReport& figure = report.arms[1].columns[column_unseen];
@@ -88,9 +89,9 @@ TEST_CASE("report: a published value is shown at its percentile") {
 
 TEST_CASE("report: JSON has every number with NaN as null, CSV a row for each") {
     Study study = with_failures();
-    for (double& status : study.scenarios.front().arms.front().columns[column_status]) status = 3;  // all failed
+    std::ranges::fill(study.scenarios.front().arms.front().columns.in_memory()[column_status], 3);  // all failed
     recount(study.scenarios.front());
-    const Report report = make_report(study, 0.05);
+    const Report report = report_either_way(study, 0.05);
     const Json arms = Json::parse(report_json(report));
     REQUIRE(arms.size() == 4);
     CHECK(arms[0]["failed"] == 300);
@@ -127,7 +128,7 @@ TEST_CASE("report: JSON has every number with NaN as null, CSV a row for each") 
 }
 
 TEST_CASE("report: requiring consistency names the arms that are not") {
-    const Report report = make_report(small_study(1, 300, 1), 0.05);
+    const Report report = report_either_way(small_study(1, 300, 1), 0.05);
     CHECK_THROWS_WITH(require(report, Requirement::consistent), Contains("heading-straight/fixed.ekf is "));
     Report none = report;
     none.arms.clear();

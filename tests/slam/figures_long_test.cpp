@@ -29,7 +29,7 @@ ScenarioResults run(const DeformableSettings& scenario, std::int64_t trials) {
 }
 
 Summary column(const ScenarioResults& results, std::size_t arm, int which) {
-    return summarise(results.arms[arm].columns[static_cast<std::size_t>(which)]);
+    return summarise(results.arms[arm].columns.in_memory()[static_cast<std::size_t>(which)]);
 }
 
 void check_mean(const Summary& ours, double theirs, double their_error) {

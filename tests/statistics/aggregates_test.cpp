@@ -75,7 +75,7 @@ void check_totals_of(const ScenarioResults& aggregates, const ScenarioResults& t
     for (std::size_t a = 0; a < trials.arms.size(); ++a) {
         const TrialTotals& arm = aggregates.arms[a].totals.trials;
         std::vector<std::int64_t> statuses(status_names().size());
-        for (const double status : trials.arms[a].columns[status_column(trials.columns)])
+        for (const double status : trials.arms[a].columns.in_memory()[status_column(trials.columns)])
             ++statuses[static_cast<std::size_t>(status)];
         CHECK(arm.statuses == statuses);
         CHECK(arm.trials() == trials.trials);

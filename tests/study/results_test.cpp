@@ -60,7 +60,7 @@ bool same(const ScenarioResults& a, const ScenarioResults& b) {
     bool columns = a.trials == b.trials && a.arms.size() == b.arms.size();
     for (std::size_t arm = 0; columns && arm < a.arms.size(); ++arm)
         for (std::size_t c = 0; c < a.columns.size(); ++c)
-            columns = columns && same_bits(a.arms[arm].columns[c], b.arms[arm].columns[c]);
+            columns = columns && same_bits(a.arms[arm].columns.in_memory()[c], b.arms[arm].columns.in_memory()[c]);
     return columns && same_bits(parts_of(a), parts_of(b));
 }
 
@@ -102,8 +102,8 @@ TEST_CASE("results: totals are those of the trials that neither failed nor are l
                                               [](const Series& f) { return f.name == "trace_P_step"; }) -
                                  results.all_series.begin());
     for (std::size_t i = 0; i < 300; ++i) {
-        if (results.arms[0].columns[column_status][i] != 0) continue;
-        sum += results.arms[0].columns[column_trace_P][i];
+        if (results.arms[0].columns.in_memory()[column_status][i] != 0) continue;
+        sum += results.arms[0].columns.in_memory()[column_trace_P][i];
         ++counted;
     }
     CHECK(results.arms[0].totals.trials.counted() == counted);
@@ -137,7 +137,8 @@ TEST_CASE("results: columns are stored at their trials") {
     const Block second = run_block(Problem(scenario), seed, 1, 44);
     for (std::size_t c = 0; c < column_count; ++c)
         for (std::size_t trial = 0; trial < 44; ++trial)
-            CHECK(same_bits(results.arms[0].columns[c][256 + trial], second.arms[0].columns[c * 44 + trial]));
+            CHECK(same_bits(results.arms[0].columns.in_memory()[c][256 + trial],
+                            second.arms[0].columns[c * 44 + trial]));
 }
 
 }  // namespace credence::test::results_test

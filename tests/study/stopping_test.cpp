@@ -92,8 +92,8 @@ TEST_CASE("stopping: an analysis has every arm and scenario, or every pair, of t
     const auto& arms = study.scenarios[1].arms;
     std::vector<double> trace(512), difference(512);
     for (std::size_t i = 0; i < 512; ++i) {
-        trace[i] = arms[1].columns[column_trace_P][i];
-        difference[i] = arms[1].columns[column_unseen][i] - arms[0].columns[column_unseen][i];
+        trace[i] = arms[1].columns.in_memory()[column_trace_P][i];
+        difference[i] = arms[1].columns.in_memory()[column_unseen][i] - arms[0].columns.in_memory()[column_unseen][i];
     }
     CHECK_THAT(analysis.states[3].mean, WithinRel(summarise(trace).mean, 1e-14));  // rounding of 512 terms
     CHECK_THAT(analysis.states[3].half_width,
@@ -105,7 +105,7 @@ TEST_CASE("stopping: an analysis has every arm and scenario, or every pair, of t
 
 TEST_CASE("stopping: a trial that failed in one arm is in no mean of that arm and in no pair") {
     Study study = small_study(1, 300, 2);
-    auto& columns = study.scenarios[0].arms[0].columns;
+    auto& columns = study.scenarios[0].arms[0].columns.in_memory();
     columns[column_status][7] = static_cast<double>(Status::non_finite);
     columns[column_unseen][7] = -1;  // its fill value, a number
     recount(study.scenarios[0]);
@@ -151,7 +151,7 @@ TEST_CASE("stopping: the number of trials that it takes is predicted from the sp
 TEST_CASE("stopping: a study stops at the first analysis that is precise enough, as computed by hand") {
     const Study all = small_study(1, 2048, 2);
     const auto half_width = [&](std::int64_t trials, int number) {
-        const std::vector<double>& column = all.scenarios[0].arms[0].columns[column_trace_P];
+        const std::vector<double>& column = all.scenarios[0].arms[0].columns.in_memory()[column_trace_P];
         const std::vector<double> first(column.begin(), column.begin() + trials);
         return t_quantile(std::ldexp(0.05, -number), static_cast<double>(trials - 1)) * summarise(first).standard_error;
     };

@@ -39,7 +39,7 @@ TEST_CASE("study: root seeds s and s + 1 share no trial") {
     std::set<std::pair<double, double>> ends;
     for (const std::uint64_t seed : {1u, 2u, 3u}) {
         const ScenarioResults results = small_study(seed, 512, 2).scenarios.front();
-        const auto& columns = results.arms.front().columns;
+        const auto& columns = results.arms.front().columns.in_memory();
         for (std::size_t i = 0; i < 512; ++i)
             ends.emplace(columns[column_pose_error][i], columns[column_nees_ratio][i]);
     }
@@ -84,7 +84,7 @@ TEST_CASE("study: all arms of a trial share their noise") {
     const auto& arms = study.scenarios.front().arms;
     int same_first = 0;  // the features' truth is the same; where both arms saw all, so is the unseen count
     for (std::size_t i = 0; i < 256; ++i)
-        same_first += arms[0].columns[column_unseen][i] == arms[1].columns[column_unseen][i];
+        same_first += arms[0].columns.in_memory()[column_unseen][i] == arms[1].columns.in_memory()[column_unseen][i];
     CHECK(same_first > 20);
     CHECK(same_first < 256);
 }

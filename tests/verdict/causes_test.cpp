@@ -68,6 +68,24 @@ TEST_CASE("causes: what P holds in place of variances") {
     CHECK(planted.causes().empty());
 }
 
+TEST_CASE("causes: a filter that diverges, and not a factor however large") {
+    Planted planted;
+    const Eigen::MatrixXd right = planted.variance;
+    planted.said = right / 1e4;
+    for (const std::string& cause : planted.causes()) CHECK_THAT(cause, !Contains("diverges"));
+    planted.said = right;
+    planted.said.col(1) /= 1e6;  // a unit
+    for (const std::string& cause : planted.causes()) CHECK_THAT(cause, !Contains("diverges"));
+    planted.said = right;
+    for (int k = 0; k < planted.steps; ++k) planted.variance.row(k) *= std::pow(3, k);
+    REQUIRE(planted.causes().size() == 1);
+    CHECK_THAT(first_cause(planted), Contains("the filter diverges, NEES/dim is ") && Contains("is a Jacobian wrong") &&
+                                         Contains("jacobian_mismatch"));
+    planted.variance = right;
+    for (int k = 0; k < planted.steps; ++k) planted.variance.row(k) *= 1 + 0.2 * k;  // far from lost
+    for (const std::string& cause : planted.causes()) CHECK_THAT(cause, !Contains("diverges"));
+}
+
 TEST_CASE("causes: degrees, components that are exchanged, and variances that stand for unknown") {
     Planted planted;
     const double squared_degrees = std::pow(180 / std::numbers::pi, 2);

@@ -25,7 +25,7 @@ TEST_CASE("compare: the variance reduction is what unpaired runs with seeds of t
                     other = run(circle, 3000 + r, trials);
         for (std::size_t c = 0; c < columns.size(); ++c) {
             const auto mean = [&](const Study& study, std::size_t arm) {
-                return mean_of(study.scenarios[0].arms[arm].columns[static_cast<std::size_t>(columns[c])]);
+                return mean_of(study.scenarios[0].arms[arm].columns.in_memory()[static_cast<std::size_t>(columns[c])]);
             };
             paired[c].push_back(mean(both, 1) - mean(both, 0));
             unpaired[c].push_back(mean(one, 1) - mean(other, 0));
@@ -54,9 +54,9 @@ TEST_CASE("compare: conclusions hold together at 95 %", "[long]") {
             const KeyedDraws<double> draws(family, s, std::numeric_limits<double>::infinity());
             if (family == 0) extend(study.scenarios[s], 100);
             for (auto& arm : study.scenarios[s].arms)
-                for (auto& column : arm.columns) std::fill(column.begin(), column.end(), 0.0);
-            for (int i = 0; i < 100; ++i)
-                study.scenarios[s].arms[0].columns[0][static_cast<std::size_t>(i)] = draws.normal(Source::walk, i, 0).x;
+                for (auto& column : arm.columns.in_memory()) std::fill(column.begin(), column.end(), 0.0);
+            std::vector<double>& first = study.scenarios[s].arms[0].columns.in_memory()[0];
+            for (int i = 0; i < 100; ++i) first[static_cast<std::size_t>(i)] = draws.normal(Source::walk, i, 0).x;
         }
         const CompareReport report = compared({{"null.h5", study}});
         wrong += std::any_of(report.pairs.begin(), report.pairs.end(),

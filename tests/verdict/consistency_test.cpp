@@ -1,6 +1,7 @@
 // The verdict. Every kind has a case that must get it and one that must not.
 
 #include "catch.hpp"
+#include "either_way.hpp"
 #include "matched.hpp"
 #include "of_scenarios.hpp"
 
@@ -20,7 +21,7 @@ ScenarioResults simulated(const DeformableSettings& scenario, std::int64_t trial
     return study.scenarios.front();
 }
 
-Evidence evidence_of_first_arm(const ScenarioResults& results) { return evidence_of(results, results.arms.front()); }
+Evidence evidence_of_first_arm(const ScenarioResults& results) { return evidence_either_way(results); }
 
 Consistency verdict_of(const DeformableSettings& scenario, std::int64_t trials, double margin = 0.05) {
     return judge(evidence_of_first_arm(simulated(scenario, trials)), margin);

@@ -3,6 +3,7 @@
 #include <credence/consistency.hpp>
 #include <credence/report.hpp>
 
+#include "either_way.hpp"
 #include "judgement_support.hpp"
 #include "program.hpp"
 #include "study_support.hpp"
@@ -121,7 +122,7 @@ Evidence evidence_with(const FailingTrial& failure, std::size_t count) {
 /// A study whose first arm has so many trials that ended like that.
 Study with_statuses(std::size_t failed, std::size_t lost) {
     Study study = small_study(1, 100, 1);
-    std::vector<double>& status = study.scenarios.front().arms.front().columns[column_status];
+    std::vector<double>& status = study.scenarios.front().arms.front().columns.in_memory()[column_status];
     for (std::size_t i = 0; i < failed + lost; ++i)
         status[i] = static_cast<double>(i < failed ? Status::covariance_not_positive_definite : Status::lost);
     recount(study.scenarios.front());
@@ -160,7 +161,8 @@ TEST_CASE("failed: the verdict takes precedence over the other trials and over e
         values.write(folder / "record.h5");
         const Record record = read_record(folder / "record.h5");
         const Evidence evidence = evidence_of(record.results, record.results.arms.front());
-        CHECK(evidence.failed_trials() == 100);
+        CHECK(evidence.left_out == 100);
+        CHECK((evidence.lost > 500) == (scale > 1));
         const Consistency with = judge(evidence, limits()), without = judge(evidence, limits(1));
         CHECK(with.verdict == Verdict::failed);
         CHECK(without.verdict == (scale < 1   ? Verdict::pessimistic
@@ -189,13 +191,13 @@ TEST_CASE("failed: a trial that ends early has not failed where the dataset `ste
 }
 
 TEST_CASE("failed: lost trials count, and every failed trial is in the first line of the arm") {
-    const Report report = make_report(with_statuses(1, 2), 0.05);
+    const Report report = report_either_way(with_statuses(1, 2), 0.05);
     const ArmReport& arm = report.arms.front();
     CHECK(arm.failed == 1);
     CHECK(arm.lost == 2);
     CHECK(arm.consistency.verdict == Verdict::failed);  // 3 of 100 are more than 1 %
-    CHECK(make_report(with_statuses(1, 0), 0.05).arms.front().consistency.verdict != Verdict::failed);
-    CHECK(make_report(with_statuses(1, 2), {0.05, 0.03}).arms.front().consistency.verdict != Verdict::failed);
+    CHECK(report_either_way(with_statuses(1, 0), 0.05).arms.front().consistency.verdict != Verdict::failed);
+    CHECK(report_either_way(with_statuses(1, 2), {0.05, 0.03}).arms.front().consistency.verdict != Verdict::failed);
 
     const std::string text = report_text(report), row = text.substr(text.find("  heading-straight/fixed.ekf"));
     CHECK_THAT(
@@ -216,6 +218,40 @@ TEST_CASE("failed: lost trials count, and every failed trial is in the first lin
                          Contains("3 of 100 trials failed or are lost") &&
                          Contains(">at most 7.6 %</data> of all"));
     CHECK_THROWS_WITH(require(report, Requirement::consistent), Contains("heading-straight/fixed.ekf failed, "));
+}
+
+TEST_CASE("failed: where most trials are lost they are judged, and counted all the same") {
+    const Report of_study = report_either_way(with_statuses(1, 60), 0.05);
+    const TemporaryFolder folder;
+    Values values;
+    for (std::size_t trial = 0; trial < 600; ++trial)
+        for (std::size_t i = 0; i < steps * n; ++i) values.error[vector_at(trial, 0) + i] *= 100;
+    cut(values, 999);
+    values.write(folder / "record.h5");
+    const Report of_record = make_record_report(read_record(folder / "record.h5"), "record.h5", 0.05);
+    for (const Report* report : {&of_study, &of_record}) {
+        const ArmReport& arm = report->arms.front();
+        const std::int64_t lost = report == &of_study ? 60 : 600;
+        CHECK(arm.failed == 1);
+        CHECK(arm.lost == lost);
+        CHECK(arm.evidence.trials == arm.trials - 1);
+        const std::string count = std::to_string(lost + 1),
+                          of = count + " of " + std::to_string(arm.trials) + " trials",
+                          text = report_text(*report), name = arm.scenario + "/" + arm.arm,
+                          page = report_html(*report, {"r.h5", {}, "test"});
+        CHECK_THAT(text, Contains("WARNING: " + of) && Contains("judged all the") &&
+                             Contains("note: " + std::to_string(lost) + " trials of " + name) &&
+                             !Contains("left out of the verdict"));
+        const std::string row = text.substr(text.find("  " + name));
+        CHECK_THAT(row.substr(0, row.find('\n')), Contains(" " + count + " (at most"));
+        const Json json = Json::parse(report_json(*report))[0];
+        CHECK(json["lost"] == lost);
+        CHECK(json["failed_trials"] == lost + 1);
+        CHECK(json["failed_most"]["status"] == "lost");
+        CHECK_THAT(report_csv(*report), Contains("," + count + "\n"));
+        CHECK_THAT(page, Contains("WARNING: " + of) && Contains(">" + count + "</data> of "));
+    }
+    CHECK(of_record.arms.front().consistency.verdict == Verdict::optimistic);
 }
 
 TEST_CASE("failed: the program's gate, its share and its refusals") {

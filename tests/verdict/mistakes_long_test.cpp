@@ -21,7 +21,7 @@ constexpr std::int64_t trials = 300;
 /// How many trials ended so.
 int ended(const ArmResults& arm, Status status) {
     int count = 0;
-    for (const double one : arm.columns[column_status]) count += one == static_cast<double>(status);
+    for (const double one : arm.columns.in_memory()[column_status]) count += one == static_cast<double>(status);
     return count;
 }
 
@@ -29,8 +29,8 @@ int ended(const ArmResults& arm, Status status) {
 double mean_ratio(const ArmResults& arm, const std::function<bool(Status)>& counts) {
     double sum = 0, count = 0;
     for (std::size_t i = 0; i < trials; ++i)
-        if (counts(static_cast<Status>(static_cast<int>(arm.columns[column_status][i])))) {
-            sum += arm.columns[column_nees_ratio][i];
+        if (counts(static_cast<Status>(static_cast<int>(arm.columns.in_memory()[column_status][i])))) {
+            sum += arm.columns.in_memory()[column_nees_ratio][i];
             ++count;
         }
     return sum / count;
@@ -80,9 +80,10 @@ TEST_CASE("mistakes: a trial whose P is not positive definite has no NEES, and n
     const int bad = ended(arm, Status::covariance_not_positive_definite);
     REQUIRE(bad > 20);
     REQUIRE(bad < trials - 20);
+    const std::vector<std::vector<double>>& columns = arm.columns.in_memory();
     for (std::size_t i = 0; i < trials; ++i)
-        if (arm.columns[column_status][i] == static_cast<double>(Status::covariance_not_positive_definite)) {
-            CHECK(std::isnan(arm.columns[column_nees_ratio][i]));
+        if (columns[column_status][i] == static_cast<double>(Status::covariance_not_positive_definite)) {
+            CHECK(std::isnan(columns[column_nees_ratio][i]));
             for (std::size_t k = 0; k < 5; ++k) CHECK(std::isnan(arm.nees[i * 5 + k]));
         }
     const Evidence evidence = evidence_of(results, arm);
@@ -116,9 +117,9 @@ TEST_CASE("mistakes: quantiles in a report are the sample's, not those of a norm
     s.arms.controllers = {Controller::fixed};
     Study study = new_study({resolved(s)}, 1);
     run_study(study, {trials, 1, {}});
-    std::vector<double> sorted = study.scenarios.front().arms.front().columns[column_trace_P];
+    std::vector<double> sorted = study.scenarios.front().arms.front().columns.in_memory()[column_trace_P];
     std::sort(sorted.begin(), sorted.end());
-    const Report report = make_report(study, 0.05);
+    const Report report = report_either_way(study, 0.05);
     const ColumnReport& figure = report.arms.front().columns[column_trace_P];
     REQUIRE(reported_quantiles[0] == 0.05);
     REQUIRE(reported_quantiles[3] == 0.95);

@@ -189,7 +189,7 @@ TEST_CASE("own world: a trial whose whole number is none of 32 bits has failed a
         const ScenarioResults& results = study.scenarios[0];
         const std::size_t count = 2, status = status_column(results.columns);
         REQUIRE(results.columns[count].name == "count");
-        const std::vector<double>& whole = results.arms[0].columns[count];
+        const std::vector<double>& whole = results.arms[0].columns.in_memory()[count];
         CHECK(results.arms[0].totals.trials.counted() == 50);
         const auto marked = std::ranges::count(whole, -2147483647.0);
         CHECK(marked > 5);
@@ -197,7 +197,7 @@ TEST_CASE("own world: a trial whose whole number is none of 32 bits has failed a
             CAPTURE(results.arms[a].name);
             CHECK(results.arms[a].totals.trials.counted() == 50 - marked);
             for (std::size_t trial = 0; trial < whole.size(); ++trial) {
-                const auto value = [&](std::size_t c) { return results.arms[a].columns[c][trial]; };
+                const auto value = [&](std::size_t c) { return results.arms[a].columns.in_memory()[c][trial]; };
                 const bool failed = whole[trial] != 7;
                 CHECK(value(count) == (failed ? -1 : 7));
                 CHECK(value(status) == (failed ? static_cast<double>(Status::non_finite) : 0));

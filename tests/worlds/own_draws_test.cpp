@@ -61,7 +61,7 @@ std::vector<double> keyed(int source, int pose, int index) {
                                {set("draw.source", source), set("draw.pose", pose), set("draw.index", index)}),
             1);
     const ScenarioResults& results = study.scenarios[0];
-    return {results.arms[0].columns[1][0], results.arms[1].columns[1][0]};
+    return {results.arms[0].columns.in_memory()[1][0], results.arms[1].columns.in_memory()[1][0]};
 }
 
 }  // namespace

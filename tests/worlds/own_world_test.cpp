@@ -81,7 +81,7 @@ Study run_spoiled(std::int64_t trials) {
 
 double statuses(const ArmResults& arm, std::size_t column, Status status) {
     double count = 0;
-    for (const double one : arm.columns[column]) count += one == static_cast<double>(status);
+    for (const double one : arm.columns.in_memory()[column]) count += one == static_cast<double>(status);
     return count;
 }
 
@@ -138,11 +138,12 @@ TEST_CASE("own world: arms share their draws, and a setting changes what it shou
     const Study study = run(tracker(), 300), other = run(tracker({{"sensor.detection", "0.5"}}), 300);
     const auto& columns = study.scenarios[0].columns;
     REQUIRE(columns[1].name == "measurements");
-    const auto &kf = study.scenarios[0].arms[0].columns, &calm = study.scenarios[0].arms[1].columns;
+    const auto &kf = study.scenarios[0].arms[0].columns.in_memory(),
+               &calm = study.scenarios[0].arms[1].columns.in_memory();
     CHECK(kf[1] == calm[1]);
     CHECK(kf[0] != calm[0]);
     double fewer = 0, all = 0;
-    for (const double count : other.scenarios[0].arms[0].columns[1]) fewer += count;
+    for (const double count : other.scenarios[0].arms[0].columns.in_memory()[1]) fewer += count;
     for (const double count : kf[1]) all += count;
     CHECK(fewer / all == Approx(0.5 / 0.9).margin(0.02));  // 8700 coins: sd 0.006
 }
@@ -153,7 +154,7 @@ TEST_CASE("own world: trouble in a trial is its status, and changes no other") {
     const std::size_t status = status_column(results.columns);
     const auto all_are = [&](std::size_t arm, Status what, double pose) {
         CHECK(statuses(results.arms[arm], status, what) == 20);
-        for (const double at : results.arms[arm].columns[status + 1]) CHECK(at == pose);
+        for (const double at : results.arms[arm].columns.in_memory()[status + 1]) CHECK(at == pose);
     };
     all_are(0, Status::completed, -1);
     all_are(1, Status::covariance_not_positive_definite, 3);
@@ -163,7 +164,7 @@ TEST_CASE("own world: trouble in a trial is its status, and changes no other") {
     CHECK(results.arms[1].totals.trials.counted() == 0);
     CHECK(results.arms[3].totals.trials.counted() == 0);
     CHECK(results.arms[3].totals.trials.lost() == 20);
-    CHECK(std::isnan(results.arms[1].columns[0][0]));
+    CHECK(std::isnan(results.arms[1].columns.in_memory()[0][0]));
     // One row was not observed at one of nine steps; rows stand for themselves from step to step.
     const Evidence sound = evidence_of(results, results.arms[0]), missing = evidence_of(results, results.arms[4]);
     CHECK(sound.nis[0].degrees == 20 * 27);
@@ -185,7 +186,7 @@ TEST_CASE("own world: series are those of the formulas") {
     }
     const auto column = [&](const std::string& name) {
         for (std::size_t c = 0; c < results.columns.size(); ++c)
-            if (results.columns[c].name == name) return results.arms[0].columns[c][0];
+            if (results.columns[c].name == name) return results.arms[0].columns.in_memory()[c][0];
         return std::nan("");
     };
     CHECK(column("trace_P") == 2);

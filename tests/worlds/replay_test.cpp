@@ -52,7 +52,7 @@ void check_bits(const Scenario& scenario, const std::vector<std::int64_t>& trial
             REQUIRE(replayed.column_values.size() == results.columns.size());
             for (std::size_t c = 0; c < results.columns.size(); ++c)
                 CHECK(std::bit_cast<std::uint64_t>(replayed.column_values[c]) ==
-                      std::bit_cast<std::uint64_t>(results.arms[a].columns[c][static_cast<std::size_t>(trial)]));
+                      std::bit_cast<std::uint64_t>(results.arms[a].columns.values(c, trial, 1).front()));
         }
 }
 

@@ -28,7 +28,7 @@ TEST_CASE("trajectory: a replayed trial has the bits of the engine's columns, in
         const std::vector<TrajectoryStep> steps = steps_of(t);
                 for (std::size_t c = 0; c < t.column_values.size(); ++c)
                     CHECK(std::bit_cast<std::uint64_t>(t.column_values[c]) ==
-                          std::bit_cast<std::uint64_t>(results.arms[a].columns[c][static_cast<std::size_t>(trial)]));
+                          std::bit_cast<std::uint64_t>(results.arms[a].columns.values(c, trial, 1).front()));
             }
     }
 }

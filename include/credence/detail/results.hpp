@@ -32,6 +32,27 @@ public:
     virtual std::vector<double> values(std::size_t column, std::int64_t first, std::int64_t count) const = 0;
 };
 
+/// The columns of one arm: one number a trial, in memory or in a file. Who reads them need not know where they are.
+class ArmColumns {
+public:
+    /// Whether no trial is kept.
+    bool empty() const { return !kept_ && in_memory_.empty(); }
+    /// A column's values as stored, of `count` rows from `first` on; NaN or fill where a trial failed.
+    std::vector<double> values(std::size_t column, std::int64_t first, std::int64_t count) const;
+
+    /// From now on they are in a file.
+    void keep(std::shared_ptr<const KeptColumns> kept);
+    /// nullptr where they are in memory.
+    const std::shared_ptr<const KeptColumns>& kept() const { return kept_; }
+    /// [columns][trials], for those who fill them. Throws std::logic_error where they are in a file.
+    std::vector<std::vector<double>>& in_memory();
+    const std::vector<std::vector<double>>& in_memory() const { return const_cast<ArmColumns&>(*this).in_memory(); }
+
+private:
+    std::vector<std::vector<double>> in_memory_;
+    std::shared_ptr<const KeptColumns> kept_;
+};
+
 struct ScenarioResults;
 
 /// Totals and details of a scenario that are kept in a file, because those of all scenarios may exceed the memory.
@@ -46,10 +67,7 @@ public:
 /// One arm of a scenario: its totals, and what is kept of its trials: all of their columns, details of the first ones.
 struct ArmResults {
     std::string name;
-    /// [columns][trials]; NaN or fill where a trial failed. Empty where `kept` has them (read column_values), and where
-    /// no trial is kept.
-    std::vector<std::vector<double>> columns;
-    std::shared_ptr<const KeptColumns> kept;
+    ArmColumns columns;
     Totals totals;
     std::vector<double> errors;                ///< [detailed trials, K - 1, n], NaN where there is none
     std::vector<double> nees;                  ///< [detailed trials, K - 1] of the first nees series, NaN likewise
@@ -140,9 +158,8 @@ Moments column_moments(const ArmResults& arm, std::size_t column);
 DifferenceTotals column_differences(const ScenarioResults& results, const ArmResults& a, const ArmResults& b,
                                     std::size_t column);
 
-/// A column's values as stored, of all rows or of `count` rows from `first` on; read where they are kept in a file.
+/// A column's values as stored, of all rows.
 std::vector<double> column_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column);
-std::vector<double> column_values(const ArmResults& arm, std::size_t column, std::int64_t first, std::int64_t count);
 
 /// The same, failed trials as NaN whatever their fill.
 std::vector<double> figure_values(const ScenarioResults& results, const ArmResults& arm, std::size_t column);

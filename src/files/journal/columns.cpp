@@ -48,8 +48,8 @@ void Journal::keep(Study& study) {
         kept.placed = places_in_file(results, kept.layout);
         results.kept_totals = std::make_shared<TotalsOfRun>(*this, s);
         for (std::size_t a = 0; a < results.arms.size() && results.keep == Keep::trials; ++a) {
-            kept.in_file.push_back(results.arms[a].kept);
-            results.arms[a].kept = std::make_shared<ColumnsOfRun>(*this, s, a);
+            kept.in_file.push_back(results.arms[a].columns.kept());
+            results.arms[a].columns.keep(std::make_shared<ColumnsOfRun>(*this, s, a));
         }
         kept_.push_back(std::move(kept));
     }

@@ -79,10 +79,7 @@ private:
     ScenarioResults read(const Part& part, const ScenarioResults& like) const {
         ScenarioResults from = results_without_totals(like.scenario, like.keep);
         from.kept_totals = part.totals;
-        for (std::size_t a = 0; a < from.arms.size(); ++a) {
-            from.arms[a].columns.clear();
-            from.arms[a].kept = part.columns[a];
-        }
+        for (std::size_t a = 0; a < from.arms.size(); ++a) from.arms[a].columns.keep(part.columns[a]);
         set_blocks(from, part.blocks, trials_);
         load_totals(from);
         return from;
@@ -96,7 +93,7 @@ ScenarioMerger::ScenarioMerger(const ScenarioResults& like, std::int64_t trials)
       results_(results_without_totals(like.scenario, like.keep)),
       totals_(std::make_shared<MergedTotals>(trials)) {
     results_.kept_totals = totals_;
-    for (ArmResults& arm : results_.arms) arm.columns.clear();  // they stay in the files
+    for (ArmResults& arm : results_.arms) arm.columns = {};  // they stay in the files
 }
 
 std::optional<ScenarioMerger::Shared> ScenarioMerger::shared(const BlockRanges& blocks) const {
@@ -108,7 +105,7 @@ std::optional<ScenarioMerger::Shared> ScenarioMerger::shared(const BlockRanges& 
 
 void ScenarioMerger::add(const ScenarioResults& from, std::size_t file) {
     MergedTotals::Part part{file, from.blocks, {}, from.kept_totals};
-    for (const ArmResults& arm : from.arms) part.columns.push_back(arm.kept);
+    for (const ArmResults& arm : from.arms) part.columns.push_back(arm.columns.kept());
     if (results_.keep == Keep::trials)
         for (const std::int64_t block : from.blocks)
             places_[block] = {totals_->parts.size(), first_row(from, block).value(), trials_in_block(trials_, block)};
@@ -123,7 +120,7 @@ ScenarioResults ScenarioMerger::merged(TotalsInMemory& in_memory) {
         const auto gathered = std::make_shared<GatheredColumns>();
         for (const auto& [block, place] : places_)
             gathered->add(totals_->parts[place.part].columns[a], place.row, place.trials);
-        results_.arms[a].kept = gathered;
+        results_.arms[a].columns.keep(gathered);
     }
     in_memory.load(results_);
     // A file that contradicts itself is found before anything is written.

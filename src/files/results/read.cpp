@@ -146,7 +146,7 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
     arm.totals.trials = read_trial_totals(group, results, read_parts(group));
     check_counted(hdf5::attribute_place(group, "counted_trials"),
                   hdf5::read_number<std::int64_t>(group, "counted_trials"), arm);
-    if (trials) arm.kept = read_columns(group, results, arm, source);
+    if (trials) arm.columns.keep(read_columns(group, results, arm, source));
     if (source.most_totals) read_totals(group, results, arm);
     return arm;
 }

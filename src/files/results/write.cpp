@@ -24,7 +24,7 @@ hdf5::Handle write_values(const Handle& group, const Column& column, const Scena
                           const ArmResults& arm, std::size_t c) {
     return hdf5::new_long_dataset<T>(group, column.name, results.trials, {column.long_name, column.unit},
                                      [&](std::int64_t first, std::int64_t count) {
-                                         const std::vector<double> values = column_values(arm, c, first, count);
+                                         const std::vector<double> values = arm.columns.values(c, first, count);
                                          std::vector<T> converted(values.size());
                                          std::transform(values.begin(), values.end(), converted.begin(),
                                                         [](double value) { return static_cast<T>(one_nan(value)); });

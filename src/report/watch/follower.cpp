@@ -18,7 +18,7 @@ JournalFollower::JournalFollower(const JournalBytes& journal, const FoundHeader&
     study_.trials = found.header.trials;
     for (ScenarioResults& scenario : study_.scenarios) {
         layouts_.emplace_back(scenario);
-        for (ArmResults& arm : scenario.arms) arm.columns.clear();  // no trial is read
+        for (ArmResults& arm : scenario.arms) arm.columns = {};  // no trial is read
     }
     seal_ = seal_of(journal);
     if (found.header.base == JournalBase::grown) read_file(results, found.header.study);
