@@ -148,6 +148,8 @@ int obey_or_complain(const std::vector<std::string>& words) {
                         1);
     } catch (const std::exception& error) {
         return complain(prefix + error.what(), 1);
+    } catch (...) {
+        return complain(prefix + "stopped by what is no std::exception. A world of one's own may have thrown it.", 1);
     }
 }
 

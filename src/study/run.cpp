@@ -17,6 +17,8 @@
 #include <exception>
 #include <mutex>
 #include <optional>
+#include <set>
+#include <string>
 #include <utility>
 
 namespace credence {
@@ -31,6 +33,9 @@ public:
         for (const ScenarioResults& results : study.scenarios)
             runners_.emplace_back(world_of(results.scenario), results.scenario);
         begun_.resize(study.scenarios.size());
+        std::set<std::string> worlds;  // scenarios of one world have the same function
+        for (std::size_t s = 0; s < runners_.size() && schedule_.progress().done < schedule_.progress().total; ++s)
+            if (worlds.insert(study.scenarios[s].scenario.world).second) runners_[s].check_repeats(study.root_seed);
     }
 
     void run() {

@@ -48,6 +48,8 @@ public:
 
     /// Simulates the first `trials` trials of a block. Thread-safe.
     Block run(std::uint64_t root_seed, std::int64_t index, int trials) const;
+    /// Throws InputError where its trials do not repeat themselves [Simulation].
+    void check_repeats(std::uint64_t root_seed) const { simulation_->check_repeats(root_seed); }
 
 private:
     std::vector<Column> columns_;

@@ -5,6 +5,7 @@
 //   n  components of the state, m  rows of an innovation; numbers of each lane are adjacent: [..., lanes]
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 namespace credence {
@@ -20,9 +21,10 @@ struct LaneStep {
 
 /// Several trials under one arm, and what the engine does for them in the same target.
 struct LanePack {
-    const std::string* world = nullptr;
+    const std::string *world = nullptr, *arm_name = nullptr;
     std::size_t arm = 0;
-    int trials = 0;  ///< that the pack has, in its first lanes
+    std::int64_t first_trial = 0;  ///< that of lane 0
+    int trials = 0;                ///< that the pack has, in its first lanes
     int poses = 0, state_size = 0, largest_innovation = 0;
     std::size_t own_column_count = 0;
     double* own_columns = nullptr;  ///< [own_column_count, lanes]

@@ -23,6 +23,8 @@ public:
     virtual std::size_t workspace_size(std::size_t arm) const = 0;
     /// Simulates a batch of trials of the arm at that place in the scenario's list.
     virtual void simulate(std::size_t arm, const Batch& batch) const = 0;
+    /// Throws InputError where trial 0 of an arm gives other numbers when it runs again; of worlds of users.
+    virtual void check_repeats(std::uint64_t) const {}
     /// Runs one trial of that arm again, the same bits as in a batch, and records it. `scenario` is that of the
     /// simulation.
     virtual Trajectory replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,

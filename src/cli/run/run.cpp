@@ -84,7 +84,7 @@ Work work_on(StoredRun& stored, const RunRequest& request) {
     const auto start = std::chrono::steady_clock::now();
     Work work;
     RunOptions options = request.options;
-    options.stop = Interrupt::came;
+    options.stop = Interrupt::came_after_block;
     options.times = &work.times;
     if (request.goals.empty() && nothing_missing(stored.study(), options)) return work;
     // With --until the number of trials is not known yet: each interim analysis asks for its own.
@@ -97,6 +97,7 @@ Work work_on(StoredRun& stored, const RunRequest& request) {
         run_study(stored.study(), options);
         progress.finish();
     }
+    Interrupt::end_blocks();
     work.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return work;
 }
@@ -154,9 +155,16 @@ void print_table(const Study& study, const RunRequest& request, const Work& work
 Work keep(StoredRun& stored, const RunRequest& request, const std::string& command_line) {
     const std::string started = now_text();
     try {
+        Interrupt::begin_blocks(program_name() +
+                                " run: stopped by a signal, and a block did not end (does a trial go on for ever?). "
+                                "What was committed is kept, and this resumes the run: " +
+                                resuming(command_line, request.options.shard) + "\n");
         Work work = work_on(stored, request);
         work.changed = stored.finish(facts_of(request, work, started, command_line));
         return work;
+    } catch (const InputError&) {
+        stored.keeps_something();  // or its journal is removed
+        throw;
     } catch (const Failure& failure) {
         if (!stored.keeps_something()) throw Failure(failure.what() + std::string(" Nothing had been committed."));
         throw Failure(failure.what() + std::string(" What was committed is kept, and this resumes the run: ") +

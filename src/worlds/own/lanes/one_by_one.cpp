@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <vector>
 
 namespace credence {
@@ -82,14 +81,10 @@ public:
         lane_ = lane;
         step_ = 0;
         draws_.start_lane(lane == 0);
-        try {
-            one(*this);
-        } catch (const TrialEnds&) {
-            return;
-        }
+        if (!call_world(pack_, static_cast<int>(lane), 1, [&] { one(*this); })) return;
         if (step_ != steps_)
-            throw std::logic_error("world " + *pack_.world + ": a trial took " + std::to_string(step_) +
-                                   " steps, not " + std::to_string(steps_) + ".");
+            throw WorldMistake("world " + *pack_.world + ": a trial took " + std::to_string(step_) + " steps, not " +
+                               std::to_string(steps_) + ".");
     }
     /// Hands the steps of all lanes on.
     void evaluate() {

@@ -11,6 +11,7 @@
 #include "worlds/simulate.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <limits>
 #include <new>
@@ -20,7 +21,7 @@
 namespace credence {
 
 void refuse(const LanePack& pack, const char* what) {
-    throw std::logic_error("world " + *pack.world + ": " + what + ".");
+    throw WorldMistake("world " + *pack.world + ": " + what + ".");
 }
 
 void leave(const LanePack&) { throw TrialEnds(); }
@@ -28,8 +29,8 @@ void leave(const LanePack&) { throw TrialEnds(); }
 int rare_index(const std::string& world, int source, int pose, int index) {
     const auto check = [&](const char* what, int value, int largest) {
         if (value < 0 || value > largest)
-            throw std::logic_error("world " + world + ": invalid " + what + " of a draw " + std::to_string(value) +
-                                   " (must be 0 to " + std::to_string(largest) + ").");
+            throw WorldMistake("world " + world + ": invalid " + what + " of a draw " + std::to_string(value) +
+                               " (must be 0 to " + std::to_string(largest) + ").");
     };
     check("source", source, source_count - 1);
     check("pose", pose, std::numeric_limits<int>::max());
@@ -69,17 +70,23 @@ struct OneTrial {
         batch.covered = covered.data();
         batch.nees = nees.data();
     }
+
+    /// Whether the numbers of the trial, which is the first of its octet, are the same bits.
+    bool same_as(const OneTrial& other) const {
+        for (const auto member : {&OneTrial::columns, &OneTrial::sums, &OneTrial::square_sums, &OneTrial::nees})
+            for (std::size_t i = 0; i < (this->*member).size(); i += octet)
+                if (std::bit_cast<std::uint64_t>((this->*member)[i]) !=
+                    std::bit_cast<std::uint64_t>((other.*member)[i]))
+                    return false;
+        return true;
+    }
 };
 
 void run_pack(const OwnView& view, LanePack& pack) {
-    try {
-        view.run_world(view.settings, pack);
-    } catch (const TrialEnds&) {
-        return;
-    }
+    if (!call_world(pack, 0, pack.trials, [&] { view.run_world(view.settings, pack); })) return;
     if (pack.steps != view.poses - 1)
-        throw std::logic_error("world " + *view.world + ": a trial took " + std::to_string(pack.steps) +
-                               " steps, not " + std::to_string(view.poses - 1) + ".");
+        throw WorldMistake("world " + *view.world + ": a trial took " + std::to_string(pack.steps) + " steps, not " +
+                           std::to_string(view.poses - 1) + ".");
 }
 
 void record_pack(const OwnView& view, LanePack& pack) { view.recorder->run(view, pack, run_pack); }
@@ -89,6 +96,7 @@ public:
     LaneSimulation(const Scenario& scenario, const OwnReport& report, const Target& target, RunPack run,
                    std::shared_ptr<const void> settings)
         : world_(scenario.world),
+          arms_(scenario.arms),
           target_(target),
           settings_(std::move(settings)),
           columns_(own_columns(scenario, report)),
@@ -128,9 +136,20 @@ public:
     const SimulationShape& shape() const override { return shape_; }
     std::size_t workspace_size(std::size_t) const override { return target_.own_workspace_size(view_); }
     void simulate(std::size_t arm, const Batch& batch) const override {
-        OwnView view = view_;
-        view.arm = arm;
-        target_.simulate_own(view, batch);
+        target_.simulate_own(view_of(arm), batch);
+    }
+
+    void check_repeats(std::uint64_t root_seed) const override {
+        for (std::size_t arm = 0; arm < arms_.size(); ++arm) {
+            OneTrial first(shape_, root_seed, 0), second(shape_, root_seed, 0);
+            run_one(view_of(arm), first);
+            run_one(view_of(arm), second);
+            if (!first.same_as(second))
+                throw InputError("cannot run world " + printable(world_) + " (trial 0 of " + printable(arms_[arm]) +
+                                 " gives other numbers a second time: of a clock, of another generator, or of what is "
+                                 "kept from trial to trial). Draw by trial.normal and trial.uniform alone, and keep "
+                                 "nothing.");
+        }
     }
 
     Trajectory replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,
@@ -138,14 +157,11 @@ public:
         Trajectory trajectory = empty_trajectory(scenario, scenario.arms[arm], columns_);
         trajectory.source = source_text(root_seed, trial);
         LaneRecorder recorder(view_.largest_innovation, target_.lanes, trajectory);
-        OwnView view = view_;
+        OwnView view = view_of(arm);
         view.run = record_pack;
         view.recorder = &recorder;
         OneTrial one(shape_, root_seed, trial);
-        const std::unique_ptr<std::byte[], AlignedDelete> room(new (room_alignment) std::byte[workspace_size(arm)]);
-        one.batch.workspace = room.get();
-        view.arm = arm;
-        target_.simulate_own(view, one.batch);
+        run_one(view, one);
         for (std::size_t c = 0; c < columns_.size(); ++c) trajectory.column_values[c] = one.columns[c * octet];
         fill_failed(trajectory.columns, trajectory.column_values.data());
         add_evaluations(trajectory, all_series_, innovations_,
@@ -154,12 +170,26 @@ public:
     }
 
 private:
+    OwnView view_of(std::size_t arm) const {
+        OwnView view = view_;
+        view.arm = arm;
+        view.arm_name = &arms_[arm];
+        return view;
+    }
+    void run_one(const OwnView& view, OneTrial& one) const {
+        const std::unique_ptr<std::byte[], AlignedDelete> room(
+            new (room_alignment) std::byte[workspace_size(view.arm)]);
+        one.batch.workspace = room.get();
+        target_.simulate_own(view, one.batch);
+    }
+
     static constexpr std::align_val_t room_alignment{64};  // as a pack of lanes wants it
     struct AlignedDelete {
         void operator()(std::byte* bytes) const { ::operator delete[](bytes, room_alignment); }
     };
 
     std::string world_;
+    std::vector<std::string> arms_;
     Target target_;
     std::shared_ptr<const void> settings_;
     std::vector<Column> columns_;

@@ -45,6 +45,7 @@ void simulate_own(const OwnView& view, const Batch& batch) {
         const KeyedDraws<Real> draws(batch.root_seed, trials_from<Real>(batch.first_trial + i), __builtin_inf());
         PackOfTrials<Real> pack(view, draws, first_lanes<Real>(batch.trials - i), room, unfolded.next(),
                                 batch.errors != nullptr ? errors : nullptr, moments);
+        pack.first_trial = batch.first_trial + i;
         view.run(view, pack);
         pack.note_columns();
         pack.note_lost();

@@ -50,6 +50,7 @@ public:
                  Real* errors, Real* moments)
         : view_(view), draws_(draws), there_(there), all_series_(all_series), errors_(errors), moments_(moments) {
         world = view.world;
+        arm_name = view.arm_name;
         arm = view.arm;
         trials = lane_count(there);
         poses = view.poses;

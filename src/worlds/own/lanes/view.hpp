@@ -19,7 +19,7 @@ struct GroupPlace {
 
 /// A scenario of a user's own world. Of the CommonView, what the folding of series reads is filled in.
 struct OwnView : CommonView {
-    const std::string* world = nullptr;
+    const std::string *world = nullptr, *arm_name = nullptr;
     std::size_t arm = 0;
     int largest_innovation = 0;              ///< m
     int column_count = 0, own_column_count = 0;
