@@ -34,6 +34,7 @@ struct Coverage {
 /// Error against predicted standard deviation: root mean squares over trials, and over the components of the group.
 struct Accuracy {
     std::vector<double> rmse, predicted;       ///< by step: sqrt(mean |e|^2), sqrt(mean trace P)
+    std::vector<Moments> square, variance;     ///< by step: of |e|^2 and of trace P
     double over_steps = 0;                     ///< RMSE over all trials and steps
     double ratio = 0;                          ///< the same over its prediction; 1 for a consistent filter
     Interval ratio_ci95;                       ///< from the spread of |e|^2 alone

@@ -60,13 +60,15 @@ const SeriesTotals* totals_of(const ScenarioResults& results, const ArmResults& 
 /// RMSE and its prediction. The ratio's interval uses the error of the mean square only, to first order: the prediction
 /// varies far less from trial to trial.
 Accuracy accuracy_of(const ScenarioResults& results, const ArmResults& arm, const std::string& group) {
-    Accuracy accuracy{{}, {}, nan, nan, {nan, nan}, ""};
+    Accuracy accuracy{{}, {}, {}, {}, nan, nan, {nan, nan}, ""};
     const SeriesTotals* error = totals_of(results, arm, SeriesRole::squared_error, group, accuracy.unit);
     const SeriesTotals* variance = totals_of(results, arm, SeriesRole::variance, group, accuracy.unit);
     if (error == nullptr || variance == nullptr) return accuracy;
     for (std::size_t k = 0; k < error->sum.size(); ++k) {
-        accuracy.rmse.push_back(std::sqrt(moments_at(arm, *error, k, 1).mean));
-        accuracy.predicted.push_back(std::sqrt(moments_at(arm, *variance, k, 1).mean));
+        accuracy.square.push_back(moments_at(arm, *error, k, 1));
+        accuracy.variance.push_back(moments_at(arm, *variance, k, 1));
+        accuracy.rmse.push_back(std::sqrt(accuracy.square.back().mean));
+        accuracy.predicted.push_back(std::sqrt(accuracy.variance.back().mean));
     }
     const Moments square = run_moments(arm, *error, results.steps(), 1);
     const double predicted = run_moments(arm, *variance, results.steps(), 1).mean;

@@ -29,7 +29,7 @@ void add_column(Table& table, const Report& report, const std::string& scenario,
     for (const ArmReport& arm : report.arms) {
         if (arm.scenario != scenario) continue;
         const ColumnReport& column = column_named(arm.columns, name);
-        if (column.summary.count == 0) continue;
+        if (column.name != name || column.summary.count == 0) continue;
         if (!any) table.group("  " + column_title(name, column.unit));
         any = true;
         table.row(column_cells("    " + arm.arm, column.summary, column.bootstrap95,
@@ -132,6 +132,47 @@ std::vector<std::string> detailed_columns(const Report& report, const std::strin
     return names;
 }
 
+/// A mean with its interval, which is only rounding where all trials have the same value.
+Cell step_cell(const Moments& moments) {
+    const Interval interval = t_interval(moments);
+    const bool rounding = half_width(interval) < 1e-8 * std::abs(moments.mean);
+    return mean_cell(moments.mean, rounding ? Interval{moments.mean, moments.mean} : interval);
+}
+
+/// trace(P) and the squared error of the whole state, which are equal in the mean if the filter is consistent, at the
+/// first step, the last and some between them.
+std::string steps_part(const Report& report, const std::string& scenario) {
+    std::vector<const ArmReport*> arms;
+    for (const ArmReport& arm : report.arms)
+        if (arm.scenario == scenario && arm.evidence.trials > 0 && !arm.evidence.groups.empty() &&
+            !arm.evidence.groups.front().accuracy.square.empty())
+            arms.push_back(&arm);
+    if (arms.empty()) return "";
+    const std::size_t steps = arms.front()->evidence.groups.front().accuracy.square.size(),
+                      shown = std::min<std::size_t>(steps, 5);
+    std::vector<std::size_t> at;
+    std::vector<std::string> heads{"by step"};
+    for (std::size_t i = 0; i < shown; ++i) {
+        at.push_back(shown == 1 ? 0 : (i * (steps - 1) + (shown - 1) / 2) / (shown - 1));
+        heads.push_back(std::to_string(at.back() + 1));
+    }
+    Table table("", heads);
+    for (const auto& [what, by_step] :
+         {std::pair("trace(P)", &Accuracy::variance), std::pair("squared error", &Accuracy::square)}) {
+        table.group("  " + column_title(what, arms.front()->evidence.groups.front().accuracy.unit));
+        for (const ArmReport* arm : arms) {
+            std::vector<Cell> cells{"    " + arm->arm};
+            for (const std::size_t k : at) {
+                const std::vector<Moments>& moments = arm->evidence.groups.front().accuracy.*by_step;
+                if (k < moments.size()) cells.push_back(step_cell(moments[k]));
+                else cells.emplace_back();
+            }
+            table.row(std::move(cells));
+        }
+    }
+    return table_text(table, 0);
+}
+
 }  // namespace
 
 std::string scenario_detail(const Report& report, const Scenario& scenario) {
@@ -141,7 +182,7 @@ std::string scenario_detail(const Report& report, const Scenario& scenario) {
                      has_published(report, scenario.name) ? "published (pctl.)" : ""});
     for (const std::string& name : detailed_columns(report, scenario.name))
         add_column(table, report, scenario.name, name);
-    text += table_text(table, 0);
+    text += table_text(table, 0) + steps_part(report, scenario.name);
     for (const ArmReport& arm : report.arms)
         if (arm.scenario == scenario.name) text += consistency_part(arm);
     return text;
