@@ -136,8 +136,8 @@ struct Record {
 Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress = {},
                    int segments = segments_auto);
 
-/// Throws InputError naming what shows that the runs of a record are not those of the first: other numbers of runs,
-/// steps or components, another `truth`, other `time` or `steps`. What only one of them has shows nothing.
+/// Throws InputError naming what shows that the runs of a record are not those of the first: another `seed`, numbers of
+/// runs, steps or components, `trial`, `truth`, `time` or `steps`. What only one of them has shows nothing.
 void require_same_runs(const std::string& first, const std::string& path);
 
 /// An array in memory that stands for a dataset of a record.

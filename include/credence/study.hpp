@@ -41,8 +41,7 @@ StudyDefinition definition_of(const Study& study);
 
 struct Record;
 
-/// A record as a study of one scenario, to be compared with others of the same runs: its columns, without those that a
-/// record does not have.
+/// A record as a study of one scenario: its columns, without those that a record does not have.
 Study study_of(Record record);
 
 /// How the study keeps its columns: the same in every scenario.

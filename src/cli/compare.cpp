@@ -5,6 +5,7 @@
 #include <credence/detail/store.hpp>
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "files/record.hpp"
 #include "base/program_name.hpp"
@@ -57,28 +58,40 @@ void add_records(const std::string& path, std::string& first, Study& study) {
             continue;
         }
         ScenarioResults &all = study.scenarios.front(), &other = one.scenarios.front();
-        if (!std::ranges::equal(all.columns, other.columns, {}, &Column::unit, &Column::unit))
-            throw InputError("cannot compare " + record + " with " + first + " (their components have other units). "
-                             "Give records of the same runs.");
+        const auto named = [](const Column& column) { return column.name + " " + column.unit; };
+        if (!std::ranges::equal(all.columns, other.columns, {}, named, named))
+            throw InputError("cannot compare " + record + " with " + first +
+                             " (they have other columns, or in other units). Give records of the same runs.");
         all.arms.push_back(std::move(other.arms.front()));
     }
 }
 
-/// Results files, or records of the same runs.
+/// Results files, or records of the same runs, which are called by their arms, or by scenario and arm.
 std::vector<StudyFile> read_files(const std::vector<std::string>& paths) {
     const bool records = kind_of(paths.front()) == FileKind::record;
     for (const std::string& path : paths) check_kind(path, {records ? FileKind::record : FileKind::results});
     std::vector<StudyFile> files;
     std::string first;  // record
+    std::vector<std::string> scenarios, arms;
     for (const std::string& path : paths) {
         files.push_back({path, records ? Study() : read_results(path, 0).study, records});
-        if (records) add_records(path, first, files.back().study);
-        if (records && paths.size() == 1 && files.front().study.scenarios.front().arms.size() == 1)
+        if (!records) continue;
+        add_records(path, first, files.back().study);
+        ScenarioResults& results = files.back().study.scenarios.front();
+        const bool is_one = results.arms.size() == 1;
+        if (is_one && paths.size() == 1)
             throw InputError("compare takes several records of the same runs. Give another.");
-        if (records && files.back().study.trials != files.front().study.trials)
+        scenarios.push_back(std::exchange(results.scenario.name, "record"));
+        arms.push_back(is_one ? std::exchange(results.arms.front().name, "record") : "record");
+        if (files.back().study.trials != files.front().study.trials)
             throw InputError("cannot compare " + path + " with " + paths.front() + " (it has " +
                              std::to_string(files.back().study.trials) + " trials, not " +
                              std::to_string(files.front().study.trials) + "). Give records of the same runs.");
+    }
+    if (records && !std::ranges::count(arms, "record")) {
+        const bool differ = std::set<std::string>(arms.begin(), arms.end()).size() == arms.size();
+        for (std::size_t i = 0; i < files.size(); ++i)
+            files[i].label = differ ? arms[i] : scenarios[i] + ":" + arms[i];
     }
     return files;
 }

@@ -30,7 +30,7 @@ class FileDataset : public RecordDataset {
 public:
     explicit FileDataset(hdf5::RealDataset dataset)
         : RecordDataset(dataset.place(), {dataset.extents().begin(), dataset.extents().end()}, dataset.epsilon(),
-                        dataset.chunk().front()),
+                        dataset.chunk().empty() ? 1 : dataset.chunk().front()),
           dataset_(std::move(dataset)) {}
     void read(const RecordExtents& first, const RecordExtents& count, std::vector<double>& values) const override {
         dataset_.read({first.begin(), first.end()}, {count.begin(), count.end()}, values);
@@ -80,11 +80,19 @@ bool FileSource::has_attribute(const std::string& name, const std::string& path)
     return answer > 0;
 }
 
-std::string FileSource::text(const std::string& name) const { return hdf5::read_any_text(root_, name); }
+std::string FileSource::text(const std::string& name, const std::string& path) const {
+    const Handle object(H5Oopen(root_.id(), object_name(path), H5P_DEFAULT), H5Oclose,
+                        record_attribute_place(name, path), "HDF5 cannot open it");
+    return hdf5::read_any_text(object, name);
+}
 
-std::optional<double> FileSource::number(const std::string& name, const std::string& path) const {
+namespace {
+
+/// The number in an attribute, read as T, HDF5's `native`; nothing where it holds anything else.
+template <class T>
+std::optional<T> read_number(const Handle& root, const std::string& name, const std::string& path, hid_t native) {
     const std::string place = record_attribute_place(name, path);
-    const Handle attribute(H5Aopen_by_name(root_.id(), object_name(path), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+    const Handle attribute(H5Aopen_by_name(root.id(), object_name(path), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
                            H5Aclose, place, "HDF5 cannot open it");
     const Handle type(H5Aget_type(attribute.id()), H5Tclose, place, "HDF5 cannot read its type");
     const Handle space(H5Aget_space(attribute.id()), H5Sclose, place, "HDF5 cannot read its extents");
@@ -92,9 +100,20 @@ std::optional<double> FileSource::number(const std::string& name, const std::str
     if ((kind != H5T_INTEGER && kind != H5T_FLOAT) || H5Sget_simple_extent_npoints(space.id()) != 1)
         return std::nullopt;
     if (kind == H5T_INTEGER) hdf5::require_bits(type, place);
-    double number = 0;
-    hdf5::check(H5Aread(attribute.id(), H5T_NATIVE_DOUBLE, &number), place, "HDF5 cannot read it");
+    T number = 0;
+    hdf5::check(H5Aread(attribute.id(), native, &number), place, "HDF5 cannot read it");
     return number;
+}
+
+}  // namespace
+
+std::optional<double> FileSource::number(const std::string& name, const std::string& path) const {
+    return read_number<double>(root_, name, path, H5T_NATIVE_DOUBLE);
+}
+
+std::optional<std::uint64_t> FileSource::seed() const {
+    if (!has_attribute("seed", "")) return std::nullopt;
+    return read_number<std::uint64_t>(root_, "seed", "", H5T_NATIVE_UINT64);
 }
 
 namespace {

@@ -18,8 +18,9 @@ public:
     DatasetPointer open(const std::string& path, Numbers numbers) const override;
     std::vector<std::string> names_in(const std::string& group) const override;
     bool has_attribute(const std::string& name, const std::string& path) const override;
-    std::string text(const std::string& name) const override;
+    std::string text(const std::string& name, const std::string& path) const override;
     std::optional<double> number(const std::string& name, const std::string& path) const override;
+    std::optional<std::uint64_t> seed() const override;
 
 private:
     const hdf5::Handle& root_;

@@ -81,7 +81,7 @@ bool ArraySource::has_attribute(const std::string& name, const std::string& path
                         : name == "dimension" && record_.dimensions.contains(path);
 }
 
-std::string ArraySource::text(const std::string& name) const { return record_.texts.at(name); }
+std::string ArraySource::text(const std::string& name, const std::string&) const { return record_.texts.at(name); }
 
 ListEntries ArraySource::list(const std::string& name) const {
     const auto found = record_.lists.find(name);

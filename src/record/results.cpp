@@ -16,37 +16,21 @@ namespace credence {
 
 namespace {
 
-/// The file's stem as a name.
-std::string scenario_name(const std::string& path) {
+/// The file's stem as a name: that of `mine.kf.h5`, whose arm is `kf`, is `mine`.
+std::string scenario_name(const std::string& path, const std::string& arm) {
     std::string name = std::filesystem::path(path).stem().string();
+    if (name.size() > arm.size() + 1 && name.ends_with("." + arm)) name.resize(name.size() - arm.size() - 1);
     for (char& c : name)
         if (!is_name_character(c)) c = '_';
     return name.empty() ? "record" : name;
 }
 
-/// In the order of RecordColumn.
-std::vector<Column> record_columns(const RecordShape& shape) {
-    const std::string unit = unit_of_squares(shape, 0),
-                      of = pose_group(shape) != 0 ? "the group pose" : "the whole state";
-    std::vector<Column> columns{
-        {"trace_P", "trace of the covariance at the last step of the trial", unit, ColumnType::real, nan},
-        {"unseen", "not known of a record", "1", ColumnType::integer, nan},
-        {"pose_error", "squared error of " + of + ", summed over the steps", unit_of_squares(shape, pose_group(shape)),
-         ColumnType::real, nan},
-        {"nees_ratio", "mean over the steps of NEES / state dimension", "1", ColumnType::real, nan},
-        {"nis_ratio", "sum of NIS over the steps / sum of measurement rows", "1", ColumnType::real, nan},
-        {"mean_trace_P", "mean over the steps of the trace of the covariance", unit, ColumnType::real, nan},
-        log_score_column()};
-    for (Column& column : status_columns()) columns.push_back(std::move(column));
-    return columns;
-}
-
-ArmResults empty_arm(const ScenarioResults& results) {
+ArmResults empty_arm(const ScenarioResults& results, const std::string& name) {
     const auto steps = static_cast<std::size_t>(results.steps());
     const auto trials = static_cast<std::size_t>(results.trials);
     const auto lags = static_cast<std::size_t>(lag_count(results.scenario.poses));
     ArmResults arm;
-    arm.name = "record";
+    arm.name = name;
     for (const Column& column : results.columns) arm.columns.in_memory().emplace_back(trials, column.fill);
     for (const Series& series : results.all_series) {
         const std::size_t counts = series.role == SeriesRole::nees ? steps * coverage_level_count : 0;
@@ -113,10 +97,29 @@ std::vector<std::string> not_judged(const RecordShape& shape) {
 
 }  // namespace
 
+std::vector<Column> record_columns(const RecordShape& shape) {
+    const std::string unit = unit_of_squares(shape, 0),
+                      of = pose_group(shape) != 0 ? "the group pose" : "the whole state";
+    std::vector<Column> columns{
+        {"trace_P", "trace of the covariance at the last step of the trial", unit, ColumnType::real, nan},
+        {unseen_column, "not known of a record", "1", ColumnType::integer, nan},
+        {"pose_error", "squared error of " + of + ", summed over the steps", unit_of_squares(shape, pose_group(shape)),
+         ColumnType::real, nan},
+        {"nees_ratio", "mean over the steps of NEES / state dimension", "1", ColumnType::real, nan},
+        {"nis_ratio", "sum of NIS over the steps / sum of measurement rows", "1", ColumnType::real, nan},
+        {"mean_trace_P", "mean over the steps of the trace of the covariance", unit, ColumnType::real, nan},
+        log_score_column()};
+    for (const Column& own : shape.columns)
+        if (own.name == unseen_column) columns[RecordColumn::unseen] = own;
+        else columns.push_back(own);
+    for (Column& column : status_columns()) columns.push_back(std::move(column));
+    return columns;
+}
+
 ScenarioResults empty_record_results(const RecordShape& shape, const std::vector<Series>& all_series,
                                      const std::string& path, int kept_steps) {
     ScenarioResults results;
-    results.scenario.name = scenario_name(path);
+    results.scenario.name = scenario_name(path, shape.arm);
     results.scenario.title = "record " + printable(path);
     results.scenario.poses = kept_steps + 1;
     results.columns = record_columns(shape);
@@ -127,7 +130,7 @@ ScenarioResults empty_record_results(const RecordShape& shape, const std::vector
     results.has_joint_covariance = shape.has_joint();
     results.not_judged = not_judged(shape);
     results.epsilon = std::max(results.epsilon, shape.covariance_epsilon);
-    results.arms.push_back(empty_arm(results));
+    results.arms.push_back(empty_arm(results, shape.arm));
     return results;
 }
 

@@ -12,9 +12,12 @@ namespace credence {
 
 /// Places of a record's columns. What a record does not say, such as `unseen`, is NaN.
 namespace RecordColumn {
-enum Place { trace_P, unseen, pose_error, nees_ratio, nis_ratio, mean_trace_P, log_score, status, status_pose };
+enum Place { trace_P, unseen, pose_error, nees_ratio, nis_ratio, mean_trace_P, log_score, own };
 }
-inline constexpr std::size_t record_column_count = RecordColumn::status_pose + 1;
+inline const std::string unseen_column = "unseen";
+
+/// Those of RecordColumn, from `own` on those of the record's own (an `unseen` has its place), and the status.
+std::vector<Column> record_columns(const RecordShape& shape);
 
 /// Results with one arm: all totals 0, columns filled, details NaN; without distribution cells and distances. By step
 /// they have `kept_steps`.

@@ -35,7 +35,11 @@ std::optional<std::uint64_t> first_difference(const RecordDataset& a, const Reco
 
 void require_same_runs(const RecordSource& first, const RecordSource& record) {
     const std::string remedy = "Give records of the same runs";
-    for (const char* path : {"error", "estimate", "truth", "time", "steps"}) {
+    if (const auto seed = record.seed(), other = first.seed(); seed && other && *seed != *other)
+        throw RecordError(record_attribute_place("seed"), "is " + std::to_string(*seed) + ", and that of the first "
+                          "record " + std::to_string(*other) + ": trials of different seeds are no pairs",
+                          "Give records of the same seed");
+    for (const char* path : {"error", "estimate", "trial", "truth", "time", "steps"}) {
         if (!first.has(path) || !record.has(path)) continue;
         const DatasetPointer a = first.open(path, Numbers::any), b = record.open(path, Numbers::any);
         if (a->extents() != b->extents())

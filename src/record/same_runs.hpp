@@ -5,8 +5,8 @@
 
 namespace credence {
 
-/// Throws RecordError naming the first dataset of `record` that shows that its runs are not those of `first`: other
-/// numbers of runs, steps or components, another `truth`, other `time` or `steps`. What only one of them has shows
+/// Throws RecordError naming what shows that the runs of `record` are not those of `first`: another seed, other numbers
+/// of runs, steps or components, other `trial`, `truth`, `time` or `steps`. What only one of them has shows
 /// nothing.
 void require_same_runs(const RecordSource& first, const RecordSource& record);
 

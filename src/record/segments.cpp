@@ -74,6 +74,7 @@ ScenarioResults SegmentPlanner::results(const RecordReader& reader, const std::s
     shape.trials = std::ssize(found_.run);
     shape.steps = shape.longest = found_.steps;
     shape.declared = declared_;
+    shape.columns.clear();  // one number a run
     RecordTotals totals(shape, name, LostTrials::counted, Copies::count);
     std::size_t next = 0;
     each_step(reader, [&](const RecordStep& one) {

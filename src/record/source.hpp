@@ -79,12 +79,14 @@ public:
 
     /// An attribute of the object at a path.
     virtual bool has_attribute(const std::string& name, const std::string& path = "") const = 0;
-    /// A text attribute of the root; the entries of a list joined by commas.
-    virtual std::string text(const std::string& name) const = 0;
+    /// A text attribute; the entries of a list joined by commas.
+    virtual std::string text(const std::string& name, const std::string& path = "") const = 0;
     /// A list attribute of the root.
     virtual ListEntries list(const std::string& name) const { return list_entries(text(name)); }
     /// The number in an attribute, of any type; nothing where it holds anything else.
     virtual std::optional<double> number(const std::string& name, const std::string& path = "") const = 0;
+    /// The attribute `seed` of the root: that of the random numbers of its trials, where it says so.
+    virtual std::optional<std::uint64_t> seed() const { return std::nullopt; }
 };
 
 /// Names for messages, as in a file: `/group/pose/nees`, `/@groups`.
@@ -99,7 +101,7 @@ public:
     DatasetPointer open(const std::string& path, Numbers numbers) const override;
     std::vector<std::string> names_in(const std::string& group) const override;
     bool has_attribute(const std::string& name, const std::string& path) const override;
-    std::string text(const std::string& name) const override;
+    std::string text(const std::string& name, const std::string& path) const override;
     ListEntries list(const std::string& name) const override;
     std::optional<double> number(const std::string& name, const std::string& path) const override;
 

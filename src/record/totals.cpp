@@ -216,8 +216,13 @@ void RecordTotals::end_trial(std::int64_t trial) {
 }
 
 void RecordTotals::add_columns(std::int64_t trial) {
-    double row[record_column_count];
-    std::fill(std::begin(row), std::end(row), nan);
+    const std::vector<Column>& columns = record_.results.columns;
+    const std::size_t at_status = status_column(columns);
+    std::vector<double> row(columns.size(), nan);
+    for (std::size_t own = 0, next = RecordColumn::own; own < shape_.columns.size(); ++own) {
+        const bool known = shape_.columns[own].name == unseen_column;
+        row[known ? std::size_t{RecordColumn::unseen} : next++] = shape_.column_values[own][size(trial)];
+    }
     // Sums and means are over the steps at which the series has a value; NaN where it has none.
     const auto at = [&](std::size_t f, std::size_t k) {
         const double all = series(f, k);
@@ -235,9 +240,9 @@ void RecordTotals::add_columns(std::int64_t trial) {
             if (const double value = at(f, k); !std::isnan(value)) sum += value;
         return count(f) > 0 ? sum : nan;
     };
-    row[RecordColumn::status_pose] = failed(status_) ? trouble_.step + 1 : -1;
-    row[RecordColumn::status] = static_cast<double>(status_);
-    if (!fill_failed(record_.results.columns, row)) {
+    row[at_status + 1] = failed(status_) ? trouble_.step + 1 : -1;
+    row[at_status] = static_cast<double>(status_);
+    if (!fill_failed(columns, row.data())) {
         if (shape_.has_errors) {
             row[RecordColumn::trace_P] = at(all_series_.variance, present_.back());
             row[RecordColumn::mean_trace_P] = over_steps(all_series_.variance) / count(all_series_.variance);
@@ -249,8 +254,8 @@ void RecordTotals::add_columns(std::int64_t trial) {
         row[RecordColumn::nis_ratio] =
             record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;
     }
-    row[RecordColumn::status] = static_cast<double>(status_);
-    for (std::size_t c = 0; c < record_column_count; ++c) arm().columns.in_memory()[c][size(trial)] = row[c];
+    row[at_status] = static_cast<double>(status_);
+    for (std::size_t c = 0; c < row.size(); ++c) arm().columns.in_memory()[c][size(trial)] = row[c];
 }
 
 /// Names the step at which the NEES of a lost trial is largest.

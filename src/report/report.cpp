@@ -119,18 +119,24 @@ Report together(std::vector<Report> reports) {
     const bool several = reports.size() > 1;
     const auto name_troubles = [&](Report& report) {
         for (RecordTrouble& trouble : report.troubles)
-            if (several) trouble.what = report.scenarios.front().name + ": " + trouble.what;
+            if (several)
+                trouble.what = report.scenarios.front().name +
+                               (report.arms.front().arm == "record" ? "" : "/" + report.arms.front().arm) + ": " +
+                               trouble.what;
     };
     name_troubles(all);
     for (std::size_t i = 1; i < reports.size(); ++i) {
         Report& one = reports[i];
-        const bool again = std::any_of(all.arms.begin(), all.arms.end(), [&](const ArmReport& arm) {
-            return arm.scenario == one.arms.front().scenario && arm.arm == one.arms.front().arm;
-        });
-        if (again) one.scenarios.front().name = one.arms.front().scenario += "_" + std::to_string(i + 1);
+        const auto same = std::ranges::find(all.scenarios, one.scenarios.front().name, &Scenario::name);
+        const bool again = same != all.scenarios.end(),
+                   beside = again && same->components == one.scenarios.front().components &&
+                            std::ranges::none_of(all.arms, [&](const ArmReport& arm) {
+                                return arm.scenario == same->name && arm.arm == one.arms.front().arm;
+                            });
+        if (again && !beside) one.scenarios.front().name = one.arms.front().scenario += "_" + std::to_string(i + 1);
         name_troubles(one);
         all.source += ", " + one.source;
-        all.scenarios.push_back(std::move(one.scenarios.front()));
+        if (!beside) all.scenarios.push_back(std::move(one.scenarios.front()));
         all.arms.push_back(std::move(one.arms.front()));
         all.troubles.insert(all.troubles.end(), one.troubles.begin(), one.troubles.end());
         all.not_judged.insert(all.not_judged.end(), one.not_judged.begin(), one.not_judged.end());

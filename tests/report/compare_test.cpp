@@ -192,6 +192,29 @@ TEST_CASE("compare: trials that failed in one arm are no pairs, and the text say
     CHECK_THAT(compare_csv(none), Contains("heading-straight,greedy.ekf,fixed.ekf,trace_P,dm^2 + rad^2,0,,,,,"));
 }
 
+TEST_CASE("compare: the conclusion names every column that differs, and the JSON lists them by their direction") {
+    Study study = new_study({matched()}, 1);
+    extend(study.scenarios[0], 400);
+    auto& planned = study.scenarios[0].arms[1].columns;
+    auto& fixed = study.scenarios[0].arms[0].columns;
+    for (std::size_t i = 0; i < 400; ++i) {
+        const auto number = static_cast<double>(i);
+        fixed[column_trace_P][i] = planned[column_trace_P][i] = number;
+        fixed[column_unseen][i] = 3, planned[column_unseen][i] = i % 2 == 0 ? 0 : 1;
+        fixed[column_path_length][i] = number;
+        planned[column_path_length][i] = number + 0.01 * static_cast<double>(1 + i % 3);
+        fixed[column_pose_error][i] = 1, planned[column_pose_error][i] = i % 2 == 0 ? 0 : 2;  // no difference
+    }
+    const CompareReport report = compared({{"made-up.h5", study}});
+    std::string text = compare_text(report);
+    for (std::size_t at; (at = text.find("\n    ")) != std::string::npos;) text.replace(at, 5, " ");
+    CHECK_THAT(text, Contains("equal in every trial; besides, greedy.kf has unseen lower by 2.5") &&
+                         Contains(", path_length higher by 0.0") && !Contains("pose_error higher by"));
+    const Json json = Json::parse(compare_json(report))[0];
+    CHECK(json["lower"] == Json::array({"unseen"}));
+    CHECK(json["higher"] == Json::array({"path_length"}));
+}
+
 TEST_CASE("compare: what is not shown is said so, and ranks against the mean are not hidden") {
     Study study = new_study({matched()}, 1);
     extend(study.scenarios[0], 400);

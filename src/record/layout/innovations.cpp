@@ -53,7 +53,9 @@ public:
         return path.empty() &&
                (name == "component_names" || (!attribute(name).empty() && record_.has_attribute(attribute(name))));
     }
-    std::string text(const std::string& name) const override { return record_.text(attribute(name)); }
+    std::string text(const std::string& name, const std::string&) const override {
+        return record_.text(attribute(name));
+    }
     ListEntries list(const std::string& name) const override {
         if (name != "component_names") return record_.list(attribute(name));
         ListEntries names;

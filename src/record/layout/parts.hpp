@@ -20,6 +20,9 @@ void add_steps(const RecordSource& source, RecordShape& shape);
 /// that does not exist may be without one. The errors are read of trials with such steps. Keeps those of few runs.
 void check_time(const RecordSource& source, RecordLayout& layout);
 
+/// The columns of the record's own, datasets /column/NAME [trial], and the name of its arm, the attribute `arm`.
+void add_columns(const RecordSource& source, RecordShape& shape);
+
 /// Gives every group the same source; none has a dataset of its own yet.
 void set_sources(GroupSource source, RecordLayout& layout);
 /// Opens a NEES as that of a group, and returns the attribute `dimension`.

@@ -106,6 +106,7 @@ private:
     void add(std::size_t file_a, const ScenarioResults& in_a, const ArmResults& a, std::size_t file_b,
              const ScenarioResults& in_b, const ArmResults& b) {
         const auto label = [&](std::size_t file, const ArmResults& arm) {
+            if (!files_[file].label.empty()) return files_[file].label;
             return files_.size() == 1 ? arm.name : labels_[file] + ":" + arm.name;
         };
         const ChosenPair pair{{in_a, a, label(file_a, a)}, {in_b, b, label(file_b, b)}, files_[file_a], files_[file_b]};

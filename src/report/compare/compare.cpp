@@ -115,6 +115,11 @@ const std::string& conclusion_name(Conclusion conclusion) {
     return names[static_cast<std::size_t>(conclusion)];
 }
 
+bool differs(const ComparedColumn& column) {
+    const Interval& mean = column.paired.difference.ci95;
+    return column.holm_p <= 0.05 && (column.paired.wilcoxon_z < 0 ? mean.high < 0 : mean.low > 0);
+}
+
 CompareReport compare_studies(const std::vector<StudyFile>& files, const std::optional<ArmsChoice>& choice) {
     CompareReport report;
     report.root_seed = files.front().study.root_seed;

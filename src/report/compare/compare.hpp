@@ -17,6 +17,7 @@ struct StudyFile {
     std::string path;
     Study study;
     bool is_record = false;  ///< or records, as arms of one scenario
+    std::string label{};  ///< what a record is called; empty: as an arm of its file
 };
 
 /// An arm as requested: its name, or that of its controller alone.
@@ -45,6 +46,10 @@ enum class Conclusion {
     not_run,    ///< A or B has no trial yet
 };
 const std::string& conclusion_name(Conclusion conclusion);
+
+/// Whether the pairs show that a column differs: by signed ranks, Holm-corrected over all columns that are compared,
+/// and with a mean difference of the same sign at 95 %.
+bool differs(const ComparedColumn& column);
 
 /// One of the two arms of a comparison.
 struct ComparedSide {

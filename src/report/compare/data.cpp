@@ -27,20 +27,27 @@ Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
               {"b", pair.comparison.b},
               {"trials", pair.trials},
               {"pairs", pair.pairs()},
-              {"conclusion", conclusion_name(pair.conclusion)}};
-    json.update(comparison_json(pair.comparison));
-    for (std::size_t f = 0; f < pair.comparison.columns.size(); ++f) {
-        Json& column = json[pair.comparison.columns[f].name];
-        column["mean_a"] = pair.a.mean[f];
-        column["mean_b"] = pair.b.mean[f];
+              {"conclusion", conclusion_name(pair.conclusion)},
+              {"pair", pair.comparison.name()}};
+    Json behind{{"same_world", !of_different_worlds(pair)}, {"differences", Json::object()}};
+    for (const KeyDifference& key : pair.differences) behind["differences"][key.key] = Json::array({key.a, key.b});
+    behind["of_a"] = side_json(pair.a);
+    behind["of_b"] = side_json(pair.b);
+    behind["root_seed"] = root_seed;
+    behind["complete"] = pair.complete;
+    for (const bool lower : {true, false}) {
+        Json& names = behind[lower ? "lower" : "higher"] = Json::array();
+        for (const ComparedColumn& column : pair.comparison.columns)
+            if (differs(column) && (column.paired.difference.mean < 0) == lower) names.push_back(column.name);
     }
-    json["same_world"] = !of_different_worlds(pair);
-    json["differences"] = Json::object();
-    for (const KeyDifference& key : pair.differences) json["differences"][key.key] = Json::array({key.a, key.b});
-    json["of_a"] = side_json(pair.a);
-    json["of_b"] = side_json(pair.b);
-    json["root_seed"] = root_seed;
-    json["complete"] = pair.complete;
+    const auto column_json = [&](const ComparedColumn& column) {
+        const auto f = static_cast<std::size_t>(&column - pair.comparison.columns.data());
+        Json one = compared_json(column);
+        one["mean_a"] = pair.a.mean[f];
+        one["mean_b"] = pair.b.mean[f];
+        return one;
+    };
+    add_columns(json, pair.comparison.columns, column_json, behind);
     return json;
 }
 

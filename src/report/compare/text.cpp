@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include "report/compare/compare.hpp"
 #include <credence/text.hpp>
 
@@ -111,7 +112,10 @@ std::string compare_head(const CompareReport& report) {
            (report.pairs.size() > 1 ? "; the conclusions hold together at 95 % (Bonferroni).\n" : ".\n");
 }
 
-std::string conclusion_text(const ComparedPair& pair) {
+namespace {
+
+/// That on the first column.
+std::string first_conclusion(const ComparedPair& pair) {
     const Comparison& comparison = pair.comparison;
     const PairedComparison& paired = comparison.columns.front().paired;
     const int digits = decimals_of(paired);
@@ -144,6 +148,22 @@ std::string conclusion_text(const ComparedPair& pair) {
            (share < against ? " on average, though only in " : ", in ") + percent(share) + " of trials" +
            (paired.ties >= 0.005 ? " (equal in " + percent(paired.ties) + ")" : "");
 }
+
+/// The columns behind the first that differ, with their mean differences.
+std::string others_text(const ComparedPair& pair) {
+    std::vector<std::string> others;
+    for (const ComparedColumn& column : std::span(pair.comparison.columns).subspan(1))
+        if (differs(column)) {
+            const double mean = column.paired.difference.mean;
+            others.push_back(column.name + (mean < 0 ? " lower by " : " higher by ") +
+                             number(std::abs(mean), decimals_of(column.paired)));
+        }
+    return others.empty() ? "" : "; besides, " + pair.comparison.a + " has " + joined(others);
+}
+
+}  // namespace
+
+std::string conclusion_text(const ComparedPair& pair) { return first_conclusion(pair) + others_text(pair); }
 
 std::string compare_notes(const CompareReport& report) {
     std::string text;

@@ -13,7 +13,7 @@ std::string compare_head(const CompareReport& report);
 /// Failed and lost trials, studies that are not complete, scenarios that are left out; a line each.
 std::string compare_notes(const CompareReport& report);
 
-/// One sentence on the first column.
+/// One sentence on the first column, and the others that differ.
 std::string conclusion_text(const ComparedPair& pair);
 
 /// What is compared, where the arms' names do not show it; the scenario's name and title in the first line.

@@ -130,29 +130,25 @@ Json sweep_json(const SweepPoint& sweep) {
     return {{"of", sweep.of}, {"at", at}};
 }
 
-Json comparison_json(const Comparison& comparison) {
-    Json json{{"pair", comparison.name()}};
-    for (const ComparedColumn& column : comparison.columns) {
-        const PairedComparison& paired = column.paired;
-        const Summary& difference = paired.difference;
-        json[column.name] = {{"mean", difference.mean},
-                             {"se", difference.standard_error},
-                             {"ci95", interval_json(difference.ci95)},
-                             {"bootstrap95", interval_json(paired.bootstrap95)},
-                             {"median", difference.median},
-                             {"sd", difference.standard_deviation},
-                             {"n", paired.pairs},
-                             {"unit", column.unit},
-                             {"below", paired.wins_a},
-                             {"above", paired.wins_b},
-                             {"ties", paired.ties},
-                             {"wilcoxon_z", paired.wilcoxon_z},
-                             {"wilcoxon_p", paired.wilcoxon_p},
-                             {"holm_p", column.holm_p},
-                             {"effect_size", paired.effect_size},
-                             {"variance_reduction", paired.variance_reduction}};
-    }
-    return json;
+Json compared_json(const ComparedColumn& column) {
+    const PairedComparison& paired = column.paired;
+    const Summary& difference = paired.difference;
+    return {{"mean", difference.mean},
+            {"se", difference.standard_error},
+            {"ci95", interval_json(difference.ci95)},
+            {"bootstrap95", interval_json(paired.bootstrap95)},
+            {"median", difference.median},
+            {"sd", difference.standard_deviation},
+            {"n", paired.pairs},
+            {"unit", column.unit},
+            {"below", paired.wins_a},
+            {"above", paired.wins_b},
+            {"ties", paired.ties},
+            {"wilcoxon_z", paired.wilcoxon_z},
+            {"wilcoxon_p", paired.wilcoxon_p},
+            {"holm_p", column.holm_p},
+            {"effect_size", paired.effect_size},
+            {"variance_reduction", paired.variance_reduction}};
 }
 
 }  // namespace credence

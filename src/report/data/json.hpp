@@ -19,7 +19,18 @@ Json evidence_json(const Evidence& evidence);
 /// The place of a scenario in its sweep: numbers as numbers.
 Json sweep_json(const SweepPoint& sweep);
 
-/// An object with a member for each column of the pairs.
-Json comparison_json(const Comparison& comparison);
+/// What is said of the pairs' values of a column.
+Json compared_json(const ComparedColumn& column);
+
+/// Puts the members that follow the columns' behind them. A column whose name means something else in the object has
+/// the member `column NAME`.
+template <class Columns, class Value>
+void add_columns(Json& json, const Columns& columns, const Value& value_of, const Json& behind) {
+    for (const auto& column : columns) {
+        const bool taken = json.contains(column.name) || behind.contains(column.name);
+        json[(taken ? "column " : "") + column.name] = value_of(column);
+    }
+    json.update(behind);
+}
 
 }  // namespace credence

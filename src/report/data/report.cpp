@@ -108,14 +108,14 @@ Json directions_json(const DirectionsFound& directions) {
 }
 
 Json arm_json(const Report& report, const ArmReport& arm) {
-    Json json{{"scenario", arm.scenario}, {"arm", arm.arm}, {"trials", arm.trials}, {"failed", arm.failed},
+    Json head{{"scenario", arm.scenario}, {"arm", arm.arm}, {"trials", arm.trials}, {"failed", arm.failed},
               {"lost", arm.lost}, {"failed_trials", arm.failed_trials()},
               {"may_be_unseen", arm.evidence.may_be_unseen()}};
-    if (arm.gaps.missing > 0) json["missing_steps"] = gaps_json(arm.gaps);
-    if (arm.cause) json["failed_most"] = cause_json(*arm.cause);
+    if (arm.gaps.missing > 0) head["missing_steps"] = gaps_json(arm.gaps);
+    if (arm.cause) head["failed_most"] = cause_json(*arm.cause);
     for (const Scenario& scenario : report.scenarios)
-        if (scenario.name == arm.scenario && SweptReport::swept(scenario)) json["sweep"] = sweep_json(scenario.sweep);
-    for (const ColumnReport& column : arm.columns) json[column.name] = figure_json(column);
+        if (scenario.name == arm.scenario && SweptReport::swept(scenario)) head["sweep"] = sweep_json(scenario.sweep);
+    Json json;
     json["verdict"] = verdict_name(arm.consistency.verdict);
     if (const std::string reason = no_claim_text(arm); !reason.empty()) json["reason"] = reason;
     json["margin"] = arm.consistency.limits.margin;
@@ -149,14 +149,17 @@ Json arm_json(const Report& report, const ArmReport& arm) {
     json["cautions"] = findings_json(arm.consistency.cautions);
     json.update(evidence_json(arm.evidence));
     for (const Comparison& pair : report.pairs)
-        if (pair.scenario == arm.scenario && pair.a == arm.arm) json["paired_difference"] = comparison_json(pair);
+        if (pair.scenario == arm.scenario && pair.a == arm.arm)
+            add_columns(json["paired_difference"] = {{"pair", pair.name()}}, pair.columns, compared_json,
+                        Json::object());
     for (const RecordTrouble& trouble : report.troubles)
         json["troubles"].push_back({{"trial", trouble.trial}, {"step", trouble.step}, {"what", trouble.what}});
     if (!report.not_judged.empty()) json["not_judged"] = report.not_judged;
     json["source"] = report.source;
     json["root_seed"] = report.root_seed ? Json(*report.root_seed) : Json();
     json["complete"] = report.complete;
-    return json;
+    add_columns(head, arm.columns, figure_json, json);
+    return head;
 }
 
 using Cells = std::vector<Cell>;

@@ -49,6 +49,10 @@ struct RecordShape {
     /// Of a record of few runs, in seconds: [1] of all runs, or [trials]; empty without the dataset `time`.
     std::vector<std::vector<double>> times;
     std::vector<std::string> known, known_groups;  ///< left out: components that are known exactly, and groups of these
+    std::string arm = "record";          ///< what the record says that it is of
+    /// Its own columns, beside those that every record has, and their values [columns][trials].
+    std::vector<Column> columns;
+    std::vector<std::vector<double>> column_values;
     bool has_errors = true;              ///< false: NEES alone
     bool of_innovations = false;         ///< the errors are innovations
     bool has_variances = false;          ///< the covariance is [trial, step, n]
