@@ -8,6 +8,7 @@
 #include "cli/version.hpp"
 #include "record/read.hpp"
 
+#include <credence/detail/store.hpp>
 #include <credence/error.hpp>
 #include <credence/record.hpp>
 #include <credence/report.hpp>
@@ -115,6 +116,27 @@ Judgement judge_file(const nb::bytes& file, const Options& options, const Listen
     }
 }
 
+/// Writes the totals of records of the same trials, which differ in their arms, as a results file.
+void write_results_of(const std::vector<nb::bytes>& files, std::uint64_t seed, const nb::bytes& output) {
+    alone([&] {
+        Study study;
+        study.root_seed = seed;
+        for (const nb::bytes& file : files) {
+            const std::string path = bytes_of(file);
+            cli::check_kind(path, {cli::FileKind::record});
+            Study one = study_of(read_record(path, {}, segments_off));
+            ScenarioResults& results = one.scenarios.front();
+            std::vector<Component>& components = results.scenario.components;
+            while (std::ssize(components) < results.state_size())
+                components.push_back({"x" + std::to_string(components.size()), "1"});
+            study.trials = one.trials;
+            study.scenarios.push_back(std::move(results));
+        }
+        write_results(Output(bytes_of(output)), study, {});
+        return true;
+    });
+}
+
 }  // namespace
 
 void bind_judge(nb::module_& module) {
@@ -125,6 +147,7 @@ void bind_judge(nb::module_& module) {
     module.def("judge", judge, nb::arg("arrays"), nb::arg("texts"), nb::arg("lists"), nb::arg("dimensions"),
                nb::arg("options"), nb::arg("name"), nb::arg("progress").none());
     module.def("check", check, nb::arg("arrays"), nb::arg("texts"), nb::arg("lists"), nb::arg("dimensions"));
+    module.def("write_results_of", write_results_of, nb::arg("records"), nb::arg("seed"), nb::arg("output"));
     module.def("judge_file", judge_file, nb::arg("path"), nb::arg("options"), nb::arg("progress").none());
 }
 

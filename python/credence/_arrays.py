@@ -245,6 +245,11 @@ def of_many_runs(given: Mapping[str, Any]) -> dict[str, Array]:
     return arrays
 
 
+def columns(given: Mapping[str, Any]) -> dict[str, Array]:
+    """Numbers of each run [trial], by their places in a record; a single number is that of a single run."""
+    return {f"column/{name}": np.atleast_1d(numbers(f"column/{name}", each)) for name, each in given.items()}
+
+
 def prepared(given: Mapping[str, Any], runs: object = None) -> dict[str, Array]:
     """The arrays of `judge`, by their places in a record; `steps` is added if runs end at different steps."""
     if runs is None:

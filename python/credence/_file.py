@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import os
 from collections.abc import Iterator
@@ -39,6 +40,30 @@ def open_hdf5(source: Source) -> tuple[h5py.File, str]:
                          "Give a file that `credence run` or `credence replay` wrote.")
     raise ValueError(f"{source}: schema_version: invalid schema_version={version} (this package reads "
                      f"{SCHEMA_VERSION}). Take the package of the release that wrote it.")
+
+
+def parted(path: str) -> tuple[str, str]:
+    """A path FILE:ARM of a record as both; the arm is empty where the path is that of a file."""
+    file, _, arm = path.rpartition(":")
+    return (path, "") if os.path.exists(path) or not os.path.exists(file) else (file, arm)
+
+
+def records_in(source: object) -> dict[str, str]:
+    """{arm: path} of the records in a file, ``record`` where one does not name its arm; nothing if it has none."""
+    if not isinstance(source, (str, os.PathLike)):
+        return {}
+    path, arm = parted(os.fsdecode(source))
+    if not h5py.is_hdf5(path):
+        return {}
+    if arm:
+        return {arm: f"{path}:{arm}"}
+    names = ("error", "estimate", "innovation", "nees", "group")
+    with contextlib.suppress(OSError), h5py.File(path, "r") as file:  # a damaged file is refused by its reader
+        if "arms" in file.attrs:
+            return {arm: f"{path}:{arm}" for arm in text(file, "arms").split(", ")}
+        if "format" not in file.attrs and any(name in file for name in names):
+            return {text(file, "arm") if "arm" in file.attrs else "record": path}
+    return {}
 
 
 def still_open(thing: Any) -> Any:

@@ -185,6 +185,7 @@ def write_record(path: str, arguments: Mapping[str, Any], log: str = "") -> None
     h5py = needed("h5py", "h5py", "keep a record")
     arguments = {name: value for name, value in arguments.items() if value is not None}
     runs, groups = arguments.pop("runs", None), arguments.get("groups")
+    columns = arguments.pop("columns", {})
     own = {what: arguments.pop(f"group_{what}", {}) for what in ("covariance", "nees")}
     texts_of = ("groups", "row_groups", "component_names", "component_units", "manifold", "chart", "quaternion")
     plain, lists = _names.texts_and_lists({name: arguments.pop(name) for name in texts_of if name in arguments})
@@ -198,7 +199,7 @@ def write_record(path: str, arguments: Mapping[str, Any], log: str = "") -> None
             file.attrs[name] = text
         for name, entries in lists.items():
             file.attrs[name] = ", ".join(" ".join(entry) for entry in entries)
-        for name, array in _arrays.prepared(arrays, runs).items():
+        for name, array in (_arrays.prepared(arrays, runs) | _arrays.columns(columns)).items():
             file[name] = array
         for name, dimension in dimensions.items():
             file[name].attrs["dimension"] = dimension

@@ -390,13 +390,15 @@ def write_records(
         return sorted(failures.values(), key=lambda one: (one.trial, one.arm))
     with whole(path) as part, h5py.File(part, "w", libver=("v110", "v110")) as file:
         file.attrs["record_version"] = 2
-        file.attrs["seed"] = np.uint64(seed)
+        file.attrs["seed"] = np.uint64(seed)  # and of each arm, which is a record by itself
         _set_text(file.attrs, "study", trials.study)
         if arms is not None:
             _set_text(file.attrs, "arms", ", ".join(arm for arm in arms if arm in layouts))
         for arm, layout in layouts.items():
             lengths = [shape[0] for segment, _ in fitting[arm] for _, _, shape in segment["form"] if shape]
-            record = _Record(file if arms is None else file.create_group(arm), layout, max(lengths, default=0), numbers)
+            group = file if arms is None else file.create_group(arm)
+            group.attrs["seed"] = np.uint64(seed)
+            record = _Record(group, layout, max(lengths, default=0), numbers)
             record.write(fitting[arm])
             record.write_failures({trial: one for (of, trial), one in failures.items() if of == arm})
     return sorted(failures.values(), key=lambda one: (one.trial, one.arm))

@@ -352,11 +352,9 @@ def _traceback(error: BaseException) -> str:
 
 def _refusals(arrays: Mapping[str, Array], texts: Mapping[str, Any]) -> dict[int, str]:
     """What `judge` would refuse of single trials: {place in the arrays: its message}."""
-    judged = {name: array for name, array in arrays.items() if not name.startswith("column/")}
-
     def refusal(part: slice) -> str:
         try:
-            described = {name: _arrays.described(array[part]) for name, array in judged.items()}
+            described = {name: _arrays.described(array[part]) for name, array in arrays.items()}
             _core.check(described, texts["texts"], texts["lists"], texts["dimensions"])
         except InputError as error:
             said = said_of_arrays(str(error)).replace("trial 0, step", "step")
@@ -365,7 +363,7 @@ def _refusals(arrays: Mapping[str, Array], texts: Mapping[str, Any]) -> dict[int
 
     if not refusal(slice(None)):
         return {}
-    found = {i: refusal(slice(i, i + 1)) for i in range(len(next(iter(judged.values()))))}
+    found = {i: refusal(slice(i, i + 1)) for i in range(len(next(iter(arrays.values()))))}
     return {i: said for i, said in found.items() if said}
 
 

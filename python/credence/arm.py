@@ -87,9 +87,8 @@ class Arm(Variables):
     def read(self, name: str, selection: Any = ()) -> Array:
         if f"{name}_total" not in self.group or name in self.group:
             return super().read(name, selection)
-        total = self.group[f"{name}_total"]
-        values = total[:] if total.ndim == 1 else total[..., 0]
-        mean: Array = np.asarray((values / self.counted_trials if self.counted_trials else values * np.nan)[selection])
+        mean: Array = np.asarray(means.of_totals(
+            self._total(f"{name}_total"), self._total(f"{name}_total"), self._counts(name), 1, "").mean[selection])
         return mean
 
     def describe(self, name: str) -> Description:
@@ -129,11 +128,12 @@ class Arm(Variables):
         return -minus.mean(name, minus=self)
 
     def per_step(self, name: str) -> Means:
-        """The mean of a series over the counted trials at each step [step], in the series' unit. The standard error is
-        NaN for series of integers, whose squares are not kept."""
+        """The mean of a series over the counted trials at each step [step], in the series' unit; ``trace_P`` is a name
+        for ``trace_P_step``. The standard error is NaN for series of integers, whose squares are not kept."""
+        name = name if f"{name}_total" in self.group or f"{name}_step_total" not in self.group else f"{name}_step"
         total, squares = self._total(f"{name}_total"), f"{name}_square_total"
         square_total = self._total(squares) if squares in self else np.full_like(total, np.nan)
-        return means.of_totals(total, square_total, self.counted_trials, self.dimension(name),
+        return means.of_totals(total, square_total, self._counts(name), self.dimension(name),
                                self.describe(name).units)
 
     def over_steps(self, name: str) -> Means:
@@ -153,7 +153,7 @@ class Arm(Variables):
         consistent."""
         attributes, steps = self.group[f"{name}_total"].attrs, self.group["step"].size
         if "dimension" in attributes:
-            return np.full(steps, float(self.counted_trials * self.dimension(name)))
+            return np.broadcast_to(np.float64(self._counts(name)) * self.dimension(name), (steps,))
         rows = text(self.group[f"{name}_total"], "rows")
         more: FloatArray = np.full(steps, float(attributes["more_rows"]) * self.counted_trials)
         return more + self._total(f"{rows}_total") if rows else more
@@ -164,6 +164,10 @@ class Arm(Variables):
         from .grid import arm_to_xarray
 
         return arm_to_xarray(self)
+
+    def _counts(self, series: str) -> Any:
+        """Over how many trials a series runs: [step] of a record, whose runs may lack steps."""
+        return self.group[f"{series}_count"][:] if f"{series}_count" in self.group else self.counted_trials
 
     def _total(self, name: str) -> FloatArray:
         variable = self.group[name]

@@ -154,6 +154,7 @@ def judge(
     nees: object = None,
     group_nees: Mapping[str, object] | None = None,
     dimension: int | Mapping[str, int] | None = None,
+    columns: Mapping[str, object] | None = None,
     name: str = "record",
     progress: bool | None = None,
 ) -> Verdict:
@@ -205,6 +206,8 @@ def judge(
         The NEES of the whole state, or of groups, and nothing else.
     dimension : int, or dict of int
         The dimension of `nees`; or of the group of each name, ``"all"`` for the whole state.
+    columns : dict of arrays [trial]
+        Further numbers of each run, such as ``{"rmse": rmse}``, which are reported beside those of every record.
     name : str
         What the report calls the record.
     progress : bool
@@ -252,7 +255,7 @@ def judge(
     given_arrays = {path: array for path, array in arrays.items() if array is not None}
     given_texts = {key: text for key, text in texts.items() if text is not None}
     if isinstance(error, (str, os.PathLike)):
-        if len(given_arrays) > 1 or given_texts or runs is not None:
+        if len(given_arrays) > 1 or given_texts or columns or runs is not None:
             raise TypeError("a record in a file has its own arrays, groups and names. Give the path alone.")
         with errors_of_arguments(), progress_bar(progress) as bar:
             return Verdict(_core.judge_file(os.fsencode(error), given_options, bar))
@@ -261,7 +264,8 @@ def judge(
     _refuse_what_is_not_used({**given_arrays, **given_texts})
     plain, lists = _names.texts_and_lists(given_texts)
     dimensions = _names.dimensions(dimension, groups, nees is not None, own["nees"])
-    taken = {path: _arrays.described(array) for path, array in _arrays.prepared(given_arrays, runs).items()}
+    arrays_and_columns = _arrays.prepared(given_arrays, runs) | _arrays.columns(columns or {})
+    taken = {path: _arrays.described(array) for path, array in arrays_and_columns.items()}
     with errors_of_arguments(said_of_arrays), progress_bar(progress) as bar:
         return Verdict(_core.judge(taken, plain, lists, dimensions, given_options, os.fsencode(name), bar))
 

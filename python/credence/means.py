@@ -57,15 +57,16 @@ def of_values(values: FloatArray, units: str) -> Means:
     return Means(np.asarray(mean), np.asarray(error), np.asarray(values.size), 1, units)
 
 
-def of_totals(totals: FloatArray, square_totals: FloatArray, count: int, dimension: int, units: str) -> Means:
-    """Of totals over `count` trials, part 0 of each."""
-    if count == 0:
-        nothing = np.full(totals.shape, np.nan)
-        return Means(nothing, nothing, np.zeros(totals.shape, np.int64), dimension, units)
-    mean = totals / count
-    spread = np.maximum(square_totals / count - mean**2, 0)
-    error = np.sqrt(spread / (count - 1)) if count > 1 else np.full_like(mean, np.nan)
-    return Means(mean, error, np.full(totals.shape, count), dimension, units)
+def of_totals(
+    totals: FloatArray, square_totals: FloatArray, count: int | npt.NDArray[np.int64], dimension: int, units: str
+) -> Means:
+    """Of totals over `count` trials, part 0 of each; of a record the count may differ from step to step."""
+    counts = np.broadcast_to(np.asarray(count, np.int64), totals.shape)
+    with np.errstate(all="ignore"):
+        mean = np.where(counts > 0, totals / counts, np.nan)
+        spread = np.maximum(square_totals / counts - mean**2, 0)
+        error = np.where(counts > 1, np.sqrt(spread / (counts - 1)), np.nan)
+    return Means(mean, error, counts, dimension, units)
 
 
 def of_exact_totals(parts: FloatArray, square_parts: FloatArray, count: int, units: str) -> Means:

@@ -18,7 +18,7 @@ from credence._calls import errors_of_arguments, framed, note, progress_bar, sai
 from credence._names import not_utf8, printable
 
 if TYPE_CHECKING:
-    from credence.simulating import Simulation
+    from credence.simulating import SimulatedArm, Simulation
     from credence.study import Study
     from credence.trajectory import Trajectory
 
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 SEED = doors.whole(0, 2**64 - 1)
 SETTINGS = doors.mapping('{"noise.heading": 0.01}')
 FILE = doors.file_or("Study")
+REPORTED = doors.file_or("Study", "Simulation", "SimulatedArm")
 
 STOPPED = 3  # the exit code of a run that a signal stopped, with everything kept
 
@@ -126,6 +127,11 @@ def _path_of(study: Study | File) -> str:
         return os.fspath(study)
     from credence._file import Identity
 
+    if study.records:
+        raise _core.InputError(
+            "cannot use records here (`run` did not make them, so no trial can be run again). Call simulate again, "
+            "with resume=True."
+        )
     if study.identity is None:
         raise _core.InputError("cannot use a study in memory here (it has no path). Give the path of its file.")
     if Identity.of(study.path) != study.identity:
@@ -377,6 +383,16 @@ def replay(
         return open_trajectories(path)  # the open file outlives its name
 
 
+class _Judged:
+    """What ``credence judge`` says of records, which are read for each format."""
+
+    def __init__(self, words: Sequence[str]) -> None:
+        self._words = words
+
+    def in_format(self, form: str) -> str:
+        return _core.command([*self._words, f"--format={form}", "--quiet"], None)[1]
+
+
 class Printed:
     """What a command says of files as they were: ``str()`` is the text that it prints, and a notebook shows its page.
 
@@ -386,11 +402,12 @@ class Printed:
         What the command prints with ``--format json``, the same bits.
     """
 
-    def __init__(self, command: str, studies: Sequence[Study | File], words: Sequence[str]) -> None:
-        whole = [command, *map(_path_of, studies), *words]
+    def __init__(self, command: str, paths: Sequence[str], words: Sequence[str]) -> None:
+        whole = [command, *paths, *words]
         _refuse_what_is_not_utf8(whole)
         with errors_of_arguments():
-            self._said = _core.Said(whole)
+            kind = _Judged if command == "judge" else _core.Said
+            self._said = kind(whole)
         self.json: list[dict[str, Any]] = json.loads(self._said.in_format("json"))
 
     def __str__(self) -> str:
@@ -406,16 +423,29 @@ class Printed:
 
 
 class Report(Printed):
-    """What a study proves, with confidence; `json` has an entry for each scenario and arm."""
+    """What a study, a simulation or a record proves, with confidence; `json` has an entry for each scenario and arm."""
 
 
 class Comparison(Printed):
     """Arms or runs compared trial by trial, A - B; `json` has an entry for each scenario and pair."""
 
 
-@doors.door(study=FILE)
+def _records_of(study: Any) -> dict[str, str] | None:
+    """{arm: path} of what has records: a simulation, one of its arms, a study of records, or a record; None else."""
+    if hasattr(study, "failures"):  # a Simulation, or one of its arms
+        return study.records if hasattr(type(study), "records") else {study.name: study.path}
+    if not isinstance(study, (str, os.PathLike)):
+        return {arm.name: path for arm, path in zip(study.arms, study.records)} or None
+    with contextlib.suppress(ImportError):  # without h5py there is no record but by judge
+        from credence._file import records_in
+
+        return records_in(study) or None
+    return None
+
+
+@doors.door(study=REPORTED)
 def report(
-    study: Study | File,
+    study: Study | Simulation | SimulatedArm | File,
     *,
     margin: float | str | None = None,
     margin_direction: float | str | None = None,
@@ -426,36 +456,74 @@ def report(
 
     Parameters
     ----------
-    study : Study or path
-        The study, or its results file.
+    study : Study, Simulation, one of its arms, or path
+        The study, or its results file; or what `simulate` gives, or a record.
     margin, margin_direction, bias, failed
-        As of `judge`.
+        As of `judge`; of a simulation `failed` is what it was given.
 
     Returns
     -------
     Report
     """
-    return Report(
-        "report",
-        [study],
-        _option_words(margin=margin, margin_direction=margin_direction, bias=bias, failed=failed),
-    )
+    records = _records_of(study)
+    failed = getattr(study, "_limit", None) if failed is None else failed
+    words = _option_words(margin=margin, margin_direction=margin_direction, bias=bias, failed=failed)
+    if records is None:
+        return Report("report", [_path_of(study)], words)  # type: ignore[arg-type]
+    return Report("judge", list(records.values()), words)
+
+
+def _compared_records(given: Sequence[dict[str, str]], arms: str | tuple[str, str] | None) -> list[str]:
+    """The paths of the records that are compared, the one that is subtracted first."""
+    named = arms.split(",") if isinstance(arms, str) else arms
+    wanted = None if named is None else [name.strip() for name in named]
+    if wanted is not None:
+        if len(wanted) != 2:
+            raise _core.InputError(f"invalid arms={printable(arms)} (a comparison takes two). Give A and B.")
+        if len(given) > 2:
+            raise _core.InputError(f"invalid arms={printable(arms)} (there are {len(given)} simulations). Give two.")
+        for records, name in zip((given[0], given[-1]), wanted):
+            if name not in records:
+                raise KeyError(f"there is no arm {name}. There is {', '.join(records)}")
+        return [given[-1][wanted[1]], given[0][wanted[0]]]
+    if len(given) == 1:
+        if len(given[0]) < 2:
+            raise _core.InputError("invalid arms=None (there is one arm, and a comparison takes two). Give another.")
+        return list(given[0].values())
+    if all(len(records) == 1 for records in given):
+        return [path for records in given for path in records.values()]
+    common = [name for name in given[0] if all(name in records for records in given)]
+    if len(common) != 1:
+        names = ", ".join(common or given[0])
+        raise _core.InputError(f"cannot compare all arms of several simulations ({names}). Give arms=(A, B), A of the "
+                               "first and B of the second.")
+    return [records[common[0]] for records in given]
+
+
+def _refuse_other_seeds(studies: Sequence[Any]) -> None:
+    seeds = [study.seed for study in studies if hasattr(type(study), "records") and study.seed is not None]
+    if len(set(seeds)) > 1:
+        raise _core.InputError(f"cannot compare simulations of seeds {seeds[0]} and {seeds[-1]} (their trials share no "
+                               "random numbers, and are no pairs). Give both the same seed.")
 
 
 @doors.door(arms=doors.texts)
 def compare(
-    *studies: Study | Simulation | File, arms: str | tuple[str, str] | None = None, failed: float | str | None = None
+    *studies: Study | Simulation | SimulatedArm | File,
+    arms: str | tuple[str, str] | None = None,
+    failed: float | str | None = None,
 ) -> Comparison:
     """Compare arms or runs trial by trial, A - B.
 
     Parameters
     ----------
-    *studies : Study, Simulation or path
-        One study or simulation, whose arms are compared; several studies with the same seed and world; or records of
-        the same runs.
+    *studies : Study, Simulation, one of its arms, or path
+        One study or simulation, whose arms are compared; several with the same seed and world; or records of the same
+        runs.
     arms : tuple of str, or str
-        A and B: ``("greedy", "fixed")``; by default every planned arm against its baseline, or the arms of further
-        studies against those of the first.
+        A and B: ``("greedy", "fixed")``; of two studies A of the first and B of the second. By default every planned
+        arm against its baseline, every arm of a simulation against its first, or the arms of further studies against
+        those of the first.
     failed : float or str
         A warning comes first where more than this share of the trials failed (0.01).
 
@@ -463,14 +531,16 @@ def compare(
     -------
     Comparison
     """
-    simulations = [study for study in studies if hasattr(study, "compare")]
-    if simulations and len(studies) == 1:
-        return simulations[0].compare(arms, failed)
-    if simulations:
-        raise _core.InputError("cannot compare a simulation with others (it has several records). Give their paths.")
+    records = [_records_of(study) for study in studies]
+    of_records = [one for one in records if one is not None]
+    if of_records and len(of_records) < len(studies):
+        raise _core.InputError("cannot compare records with results files. Give studies of one kind.")
+    if of_records:
+        _refuse_other_seeds(studies)
+        return Comparison("compare", _compared_records(of_records, arms), _option_words(failed=failed))
     both = arms if arms is None or isinstance(arms, str) else ",".join(arms)
-    files = [study for study in studies if not hasattr(study, "compare")]
-    return Comparison("compare", files, _option_words(arms=both, failed=failed))
+    paths = [_path_of(study) for study in studies]  # type: ignore[arg-type]
+    return Comparison("compare", paths, _option_words(arms=both, failed=failed))
 
 
 @doors.door(path_or_text=doors.paths, set=SETTINGS, sweep=doors.sweep)

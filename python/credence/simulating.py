@@ -13,6 +13,7 @@ docs/python.md says where random numbers come from, what is kept, and what becom
 from __future__ import annotations
 
 import contextlib
+import functools
 import importlib.util
 import inspect
 import math
@@ -40,7 +41,10 @@ from credence.judging import REFUTED, Verdict, judge, tune_hint
 from credence.program import SEED, Interrupted
 
 if TYPE_CHECKING:
+    from credence.arm import Arm
+    from credence.means import Means
     from credence.program import Comparison
+    from credence.study import Study
 
     File = str | os.PathLike[str]
     Goals = str | Sequence[str] | Mapping[str, object]
@@ -196,7 +200,8 @@ def _entries(name: str, text: str) -> Any:
 
 
 class SimulatedArm:
-    """One arm of a simulation: its record, and what is said of it.
+    """One arm of a simulation: its record, and what is said of it. What an `Arm` of a study has, it has too:
+    ``arm["trace_P"]`` [trial], ``arm.per_step("trace_P")``, ``arm.mean("rmse", minus=other)``.
 
     Attributes
     ----------
@@ -231,6 +236,25 @@ class SimulatedArm:
         with h5py.File(self._files.record, "r") as file:
             yield file if self._files.arms is None else file[self.name]
 
+    @functools.cached_property
+    def results(self) -> Arm:
+        """Its columns and series, as those of an arm of a study."""
+        from credence.study import of_records
+
+        return of_records([self.path]).arms[0]
+
+    def mean(self, name: str, minus: SimulatedArm | None = None) -> Means:
+        """The mean of a column, or of its differences trial by trial to another arm, as of `Arm.mean`."""
+        return self.results.mean(name, None if minus is None else minus.results)
+
+    def __getitem__(self, name: str) -> Array:
+        return self.results[name]
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self.results, name)
+
     def read(self, name: str) -> Array:
         """An array of the record, such as ``"error"`` [trial, step, n] or ``"trial"`` [trial]."""
         import h5py
@@ -258,6 +282,8 @@ class SimulatedArm:
             for name, dataset in file.items():
                 if isinstance(dataset, h5py.Dataset) and name not in ("trial", "failure"):
                     arguments[name] = np.asarray(dataset[()])
+            if columns := file.get("column"):
+                arguments["columns"] = {name: np.asarray(column[()]) for name, column in columns.items()}
             for name, group in file.get("group", {}).items():
                 for what, dataset in group.items():
                     arguments.setdefault(f"group_{what}", {})[name] = np.asarray(dataset[()])
@@ -303,6 +329,16 @@ class Simulation:
             raise KeyError(f"the simulation has no arm {name}. It has {', '.join(self._arms)}")
         return self._arms[name]
 
+    def __getitem__(self, name: str) -> SimulatedArm:
+        return self.arm(name)
+
+    @functools.cached_property
+    def study(self) -> Study:
+        """The columns and series of all arms, as those of a study that `credence.run` gives."""
+        from credence.study import of_records
+
+        return of_records([arm.path for arm in self._arms.values()])
+
     @property
     def arms(self) -> list[str]:
         """The names of the arms, in their order."""
@@ -326,11 +362,12 @@ class Simulation:
         """What `credence.compare` says of the arms: A - B of those named, else of every arm and the first."""
         from credence.program import compare
 
-        names = list(self._arms) if arms is None else list(arms.split(",") if isinstance(arms, str) else arms)[::-1]
-        if len(names) < 2 or (arms is not None and len(names) != 2):
-            raise _core.InputError(f"invalid arms={printable(arms)} (a comparison takes two). Give A and B.")
-        chosen = None if arms is None else ",".join(self.arm(name.strip()).name for name in names[::-1])
-        return compare(self._path, arms=chosen, failed=self._limit if failed is None else failed)
+        return compare(self, arms=arms, failed=self._limit if failed is None else failed)
+
+    @property
+    def records(self) -> dict[str, str]:
+        """{arm: the path of its record}."""
+        return {name: arm.path for name, arm in self._arms.items()}
 
     def _said(self, form: str) -> str:
         words = ["judge", self._path, f"--failed={self._limit}", f"--format={form}", "--quiet"]

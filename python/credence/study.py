@@ -14,13 +14,16 @@ from __future__ import annotations
 
 import configparser
 import html
-from collections.abc import Iterator
+import json
+import os
+import tempfile
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, overload
 
 import h5py
 
 from . import _doors as doors
-from ._file import TRAJECTORIES, Identity, Source, open_hdf5, stem, still_open, text
+from ._file import TRAJECTORIES, Identity, Source, open_hdf5, parted, records_in, stem, still_open, text
 from .arm import Arm
 from .means import Means
 
@@ -28,6 +31,7 @@ if TYPE_CHECKING:
     import xarray
 
     from .grid import Grid
+    from .simulating import Simulation
 
 __all__ = ["Arm", "Means", "Scenario", "Study", "open"]
 
@@ -129,8 +133,14 @@ class Study:
         return bool(self.file.attrs["complete"])
 
     @property
-    def seed(self) -> int:
-        return int(text(self.file, "root_seed_text"))
+    def seed(self) -> int | None:
+        """The root seed; None of records that have none."""
+        return int(text(self.file, "root_seed_text")) if "root_seed_text" in self.file.attrs else None
+
+    @property
+    def records(self) -> list[str]:
+        """The paths of the records that the study was made of; none of a results file."""
+        return list(json.loads(text(self.file, "records"))) if "records" in self.file.attrs else []
 
     @property
     def path(self) -> str:
@@ -180,15 +190,19 @@ class Study:
     def __exit__(self, *_: object) -> None:
         self.close()
 
+    def _source(self) -> str:
+        return ", ".join(self.records) or self.path
+
     def _state(self) -> str:
         kept = ", aggregates" if "keep" in self.file.attrs else ""
-        return f"{self.trials:,} trials, seed {self.seed}, {'complete' if self.complete else 'not complete'}{kept}"
+        seed = "" if self.seed is None else f", seed {self.seed}"
+        return f"{self.trials:,} trials{seed}, {'complete' if self.complete else 'not complete'}{kept}"
 
     def __repr__(self) -> str:
         if not self._file:
             return "<credence.Study, closed>"
         shown = [f"  {arm!r}" for arm in self.arms[:SHOWN]]
-        return "\n".join([f"<credence.Study {self.path}: {self._state()}>", *shown, *self._rest()])
+        return "\n".join([f"<credence.Study {self._source()}: {self._state()}>", *shown, *self._rest()])
 
     def _repr_html_(self) -> str:
         if not self._file:
@@ -197,7 +211,7 @@ class Study:
                        for arm in self.arms[:SHOWN])
         heads = "".join(f"<th>{head}</th>" for head in ("scenario", "arm", "trials", "failed", "NEES / n"))
         rest = "".join(f"<p>{line}</p>" for line in self._rest())
-        return (f"<p><b>{html.escape(self.path)}</b>: {self._state()}</p><table><thead><tr>{heads}</tr></thead>"
+        return (f"<p><b>{html.escape(self._source())}</b>: {self._state()}</p><table><thead><tr>{heads}</tr></thead>"
                 f"<tbody>{rows}</tbody></table>{rest}")
 
     def _rest(self) -> list[str]:
@@ -212,14 +226,40 @@ def _row(arm: Arm) -> tuple[str, ...]:
     return stem(arm.group.parent), arm.name, trials, f"{arm.failed_trials:,}", shown
 
 
-@doors.door(source=doors.source)
-def open(source: Source) -> Study:
-    """Opens a results file; nothing but its header is read.
+def of_records(paths: Sequence[str]) -> Study:
+    """The study whose arms are records of the same trials: their columns, and their series by step."""
+    from credence import _core
+    from credence._calls import errors_of_arguments
+
+    whole = [os.path.abspath(os.fspath(path)) for path in paths]
+    with h5py.File(parted(whole[0])[0], "r") as first:
+        seed = int(first.attrs["seed"]) if "seed" in first.attrs else None
+    with tempfile.TemporaryDirectory(prefix="credence-") as folder:
+        path = os.path.join(folder, "records.h5")
+        with errors_of_arguments():
+            _core.write_results_of([os.fsencode(one) for one in whole], seed or 0, os.fsencode(path))
+        with h5py.File(path, "r+") as file:
+            file.attrs["records"] = json.dumps(whole)
+            if seed is None:
+                del file.attrs["root_seed_text"]
+        return Study(h5py.File(path, "r"))  # the open file outlives its name
+
+
+def _openable(name: str, value: Any) -> Any:
+    if hasattr(type(value), "verdicts"):  # a Simulation
+        return value
+    return doors.paths(name, value) if isinstance(value, (list, tuple)) else doors.source(name, value)
+
+
+@doors.door(source=_openable)
+def open(source: Source | Simulation | Sequence[str | os.PathLike[str]]) -> Study:
+    """Opens a results file, of which nothing but the header is read; or records, which are read whole.
 
     Parameters
     ----------
-    source : path or binary file
-        What ``credence run -o`` wrote, of schema version 4; or an open file, such as io.BytesIO.
+    source : path, binary file, Simulation or list of paths
+        What ``credence run -o`` wrote, of schema version 4, or an open file, such as io.BytesIO; what `simulate` gives;
+        or the path of a record [docs/judge.md], or several of the same trials, which are then its arms.
 
     Returns
     -------
@@ -230,7 +270,13 @@ def open(source: Source) -> Study:
     FileNotFoundError, ValueError
         The file is not there, or is not a results file of a version that this package reads.
     """
-    file, kind = open_hdf5(source)
+    if hasattr(type(source), "verdicts"):  # a Simulation
+        return source.study  # type: ignore[union-attr]
+    if isinstance(source, (list, tuple)):
+        return of_records([os.fspath(one) for one in source])
+    if records := records_in(source):
+        return of_records(list(records.values()))
+    file, kind = open_hdf5(source)  # type: ignore[arg-type]
     if kind == TRAJECTORIES:
         file.close()
         raise ValueError(f"{source}: format: it has trajectories, not results. Take credence.open_trajectories.")

@@ -385,9 +385,9 @@ def given(*words):
 
 def test_the_command_draws_all_that_a_file_has(tmp_path, capsys):
     assert main(given(studies.two_scenarios(), "-o", tmp_path, "--scenario", "kf-circle-constant")) == 0
-    kinds = ["verdicts", "map-fixed.kf", "map-greedy.kf", "nees", "nis", "coverage", "chi_square", "accuracy",
-             *(f"{kind}-{column}" for kind in ("distribution", "paired")
-               for column in ("trace_P", "unseen", "pose_error"))]
+    kinds = ["verdicts", "map-fixed.kf", "map-greedy.kf", "nees", "nis", "coverage", "chi_square", "trace_P",
+             "accuracy", *(f"{kind}-{column}" for kind in ("distribution", "paired")
+                           for column in ("trace_P", "unseen", "pose_error"))]
     expected = {f"kf-circle-constant-{kind}.{ending}" for kind in kinds for ending in ("pdf", "png")}
     assert {path.name for path in tmp_path.iterdir()} == expected
     assert len(capsys.readouterr().out.splitlines()) == len(expected)

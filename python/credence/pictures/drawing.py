@@ -11,31 +11,32 @@ from typing import Any
 import matplotlib
 
 from .. import _doors as doors
-from .._file import RESULTS, open_hdf5
+from .._file import RESULTS, open_hdf5, records_in
 from ..grid import Grid
+from ..simulating import Simulation
 from ..study import Scenario, Study
 from ..study import open as open_study
 from ..trajectory import Trajectory, open_trajectories
 from . import animation, program, style, sweep, trajectory, verdicts
 from .place import place
-from .steps import accuracy, chi_square, coverage, nees, nis
+from .steps import accuracy, chi_square, coverage, nees, nis, trace
 from .style import Picture as Picture
 from .trials import distribution, paired
 
 OF_SCENARIO: dict[str, Callable[..., Picture]] = {
     "verdicts": verdicts.verdicts, "nees": nees, "nis": nis, "coverage": coverage, "chi_square": chi_square,
-    "accuracy": accuracy, "distribution": distribution, "paired": paired, "map": verdicts.ratio_map,
+    "trace_P": trace, "accuracy": accuracy, "distribution": distribution, "paired": paired, "map": verdicts.ratio_map,
     "place": place}
 OF_TRIAL: dict[str, Callable[..., Picture]] = {
     "path": trajectory.path, "errors": trajectory.errors, "nees": trajectory.nees}
 
 
 @doors.door(
-    what=doors.file_or("Study", "Scenario", "Grid", "Trajectory"), kind=doors.text, scenario=doors.text,
+    what=doors.file_or("Study", "Simulation", "Scenario", "Grid", "Trajectory"), kind=doors.text, scenario=doors.text,
     arms=doors.texts, width=doors.above_zero, path=doors.output, title=doors.flag,
 )  # fmt: skip
 def plot(
-    what: Study | Scenario | Grid | Trajectory | str | os.PathLike[str],
+    what: Study | Simulation | Scenario | Grid | Trajectory | str | os.PathLike[str],
     kind: str | None = None,
     *,
     scenario: str | None = None,
@@ -49,13 +50,13 @@ def plot(
 
     Parameters
     ----------
-    what : Study, Scenario, Grid, Trajectory or path
-        What to draw: of a study its first scenario, or its first grid where it has one; of a path to a trajectory file
-        its first trial.
+    what : Study, Simulation, Scenario, Grid, Trajectory or path
+        What to draw: of a study its first scenario, or its first grid where it has one; what `simulate` gives, or the
+        path of a record; of a path to a trajectory file its first trial.
     kind : str, optional
-        Of a scenario: ``nees`` (the default), ``nis``, ``coverage``, ``chi_square``, ``accuracy``, ``distribution``,
-        ``paired``, ``verdicts``, ``map``, ``place``. Of a grid: ``sweep``. Of a trial: ``path`` (the default),
-        ``errors``, ``nees``.
+        Of a scenario: ``nees`` (the default), ``nis``, ``coverage``, ``chi_square``, ``trace_P``, ``accuracy``,
+        ``distribution``, ``paired``, ``verdicts``, ``map``, ``place``. Of a grid: ``sweep``. Of a trial: ``path`` (the
+        default), ``errors``, ``nees``.
     scenario : str, optional
         The scenario of a study.
     arms : list of str, optional
@@ -69,9 +70,9 @@ def plot(
     title : bool
         Whether it has its message and, below it, its source; without them a page says both in its caption.
     **options
-        ``group`` of nees, coverage and accuracy (``all``); ``level`` of coverage (0.95); ``column`` of distribution,
-        paired (``trace_P``) and sweep (``nees_ratio``); ``difference`` of sweep (False); ``arm`` of map; ``ellipse`` of
-        path (``95`` or ``1-sigma``).
+        ``group`` of nees, coverage, trace_P and accuracy (``all``); ``level`` of coverage (0.95); ``column`` of
+        distribution, paired (``trace_P``) and sweep (``nees_ratio``); ``difference`` of sweep (False); ``arm`` of map;
+        ``ellipse`` of path (``95`` or ``1-sigma``).
 
     Returns
     -------
@@ -80,6 +81,8 @@ def plot(
     """
     if isinstance(what, str | os.PathLike):
         what = _first(what)
+    if isinstance(what, Simulation):
+        what = what.study
     if isinstance(what, Study):
         grids = what.grids
         if scenario is None and grids and kind in (None, "sweep"):
@@ -98,6 +101,8 @@ def plot(
 
 def opened(path: str | os.PathLike[str]) -> Study | list[Trajectory]:
     """What a results file or a trajectory file has."""
+    if records_in(path):
+        return open_study(path)
     file, kind = open_hdf5(path)
     file.close()
     return open_study(path) if kind == RESULTS else open_trajectories(path)
@@ -196,6 +201,8 @@ def animate(
         animation.animate(what, str(path), ellipse=ellipse, frames_per_second=frames_per_second,
                           progress=progress)
         return path
+    if isinstance(what, Simulation) or what.records:
+        raise ValueError("cannot run a trial of records again (`credence.run` did not make them). Choose a study.")
     scenario = scenario or next(iter(what))
     arm = arm_meant(what.scenarios[scenario], arm) if arm else list(what.scenarios[scenario])[-1]
     with tempfile.TemporaryDirectory(prefix="credence-") as folder:

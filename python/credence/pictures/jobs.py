@@ -14,6 +14,7 @@ from .drawing import OF_SCENARIO, OF_TRIAL, arm_meant, opened
 from .trials import NAMES, NO_PAIR, pairs
 
 Job = tuple[str, Any, str, dict[str, Any]]  # stem, what is drawn, kind, options
+NOT_DRAWN = ("nees_ratio", "nis_ratio", "mean_trace_P", "log_score", "path_length")  # unless they are asked for
 NEED_TRIALS = ("distribution", "paired", "place")
 FILM = "animation"  # a kind of the command alone
 KINDS = sorted({*OF_SCENARIO, *OF_TRIAL, "sweep", FILM})
@@ -102,15 +103,17 @@ def _of_grid(grid: Grid, options: argparse.Namespace) -> Iterator[Job]:
 
 def _of_scenario(scenario: Scenario, arms: list[str] | None, options: argparse.Namespace) -> Iterator[Job]:
     names, asked = arms or list(scenario), options.kind or []
-    first = scenario[names[0]]
-    columns = [column for column in NAMES if column in first.columns and column != "nees_ratio"]
+    first, of_records = scenario[names[0]], bool(Study(scenario.group.file).records)
+    columns = [column for column in [*NAMES, *first.columns] if column in first.columns and column not in NOT_DRAWN]
+    columns = list(dict.fromkeys(columns))
     says, replays = {"credence": options.credence}, {"credence": options.credence, "trial": options.trial}
     kinds: dict[str, list[dict[str, Any]]] = {
         "verdicts": [says], "map": [says | {"arm": arm} for arm in names],
         "nees": [{}], "nis": [{}] if "nis" in first.series else [], "coverage": [{}],
-        "chi_square": [{}] if "nees_cells" in first else [], "accuracy": [{}],
+        "chi_square": [{}] if "nees_cells" in first or of_records else [], "trace_P": [{}],
+        "accuracy": [{}],
         "distribution": [{"column": column} for column in columns],
-        "paired": [{"column": column} for column in columns if pairs(names, arms)],
+        "paired": [{"column": column} for column in columns if pairs(names, arms, of_records)],
         "place": [replays] if "place" in asked else [],
         FILM: [replays | {"arm": arm, "scenario": scenario.name} for arm in names if FILM in asked]}
     for kind, wanted in kinds.items():

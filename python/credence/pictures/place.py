@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from ..study import Scenario
+from ..study import Scenario, Study
 from ..trajectory import Trajectory, open_trajectories
 from . import program, style, trajectory
 from .steps import Arms, source
@@ -39,6 +39,8 @@ def _grouped(trials: dict[str, Trajectory]) -> list[tuple[list[str], Trajectory]
 
 def place(scenario: Scenario, arms: Arms, width: float, *, trial: int = 0, credence: str | None = None) -> Picture:
     """The path of a trial under each arm (above), and where it is among all trials of the study (below)."""
+    if Study(scenario.group.file).records:
+        raise ValueError("invalid kind=place (it runs a trial again, which no record can). Choose another.")
     with tempfile.TemporaryDirectory(prefix="credence-") as folder:
         trials = {}
         for name in arms:

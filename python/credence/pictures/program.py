@@ -8,6 +8,7 @@ import os
 import pathlib
 import shutil
 import subprocess
+from collections.abc import Sequence
 from typing import Any
 
 
@@ -46,14 +47,19 @@ def said(words: list[str], program: str | None = None) -> Any:
     return json.loads(done.stdout)
 
 
-def report(path: str, program: str | None = None) -> dict[tuple[str, str], dict[str, Any]]:
-    """{(scenario, arm): its part of the report}."""
-    return _report(path, os.stat(path).st_mtime_ns, program)
+def report(
+    path: str, program: str | None = None, records: Sequence[str] = ()
+) -> dict[tuple[str, str], dict[str, Any]]:
+    """{(scenario, arm): its part of the report}; of records what is judged of them."""
+    words = ("judge", *records, "--quiet") if records else ("report", path)
+    return _report(words, tuple(os.stat(one).st_mtime_ns for one in records or [path]), program)
 
 
 @functools.lru_cache(maxsize=2)
-def _report(path: str, _: int, program: str | None) -> dict[tuple[str, str], dict[str, Any]]:
-    parts = said(["report", path, "--format=json"], program)
+def _report(
+    words: tuple[str, ...], _: tuple[int, ...], program: str | None
+) -> dict[tuple[str, str], dict[str, Any]]:
+    parts = said([*words, "--format=json"], program)
     return {(part["scenario"], part["arm"]): part for part in parts}
 
 

@@ -22,8 +22,9 @@ def source(scenario: Scenario) -> str:
     """What every picture says of where its numbers come from."""
     study = Study(scenario.group.file)
     trials = max(arm.trials for arm in scenario.arms.values())
+    seed = "" if study.seed is None else f", seed {study.seed}"
     unfinished = "" if study.complete else ", part of a study"
-    return f"{scenario.name}, {trials:,} trials, seed {study.seed}{unfinished}"
+    return f"{scenario.name}, {trials:,} trials{seed}{unfinished}"
 
 
 def places(arms: Arms) -> dict[str, int]:
@@ -90,6 +91,31 @@ def nis(scenario: Scenario, arms: Arms, width: float) -> Picture:
     return _ratio(scenario, arms, {name: "nis" for name in arms}, "NIS / measured rows", width)
 
 
+def trace(scenario: Scenario, arms: Arms, width: float, *, group: str = "all") -> Picture:
+    """The mean trace of a component group's covariance at each step."""
+    picture, axis = style.one_panel(width)
+    found, drawn, unit, series = {}, [], "", _of(arms, "variance", group)
+    for name, (place, arm) in arms.items():
+        means = arm.per_step(series[name])
+        low, high = means.interval()
+        step, shown = arm["step"], style.thinned(means.mean, low, high)
+        line = style.arm_line(place, len(arms), shown.size)
+        style.interval(axis, step[shown], means.mean[shown], low[shown], high[shown], line, len(arms))
+        axis.plot(step[shown], means.mean[shown], **line)
+        drawn.append(means.mean)
+        found[name], unit = (float(means.mean[-1]), float(np.mean(means.mean))), means.units
+    style.step_axis(axis, arm["step"])
+    axis.set_ylim(0, None)
+    style.spread_out(axis.yaxis, drawn)
+    what = "trace(P)" if group == "all" else f"trace(P) of {group}"
+    axis.set_ylabel(what + style.in_brackets(unit))
+    style.key(axis, style.arm_entries(places(arms)), width)
+    picture.title(f"{what} at the last step (mean over the steps): "
+                  + style.ranked(found, lambda of: f"{of[0]:.3g} ({of[1]:.3g})") + f" {style.pretty(unit)}",
+                  f"{source(scenario)}; shades or bars: 95 % intervals of the means")
+    return picture
+
+
 def coverage(scenario: Scenario, arms: Arms, width: float, *, group: str = "all", level: float = 0.95) -> Picture:
     """The share of trials whose truth is inside the region of P of that level (0.5, 0.9, 0.95 or 0.99) at each step."""
     picture, axis = style.one_panel(width)
@@ -118,7 +144,11 @@ def chi_square(scenario: Scenario, arms: Arms, width: float, *, bins: int = 32) 
     picture, axis = style.one_panel(width)
     tails = {}
     for name, (place, arm) in arms.items():
-        counts = arm["nees_cells"].sum(axis=0).reshape(bins, -1).sum(axis=1)
+        if "nees_cells" in arm:
+            counts = arm["nees_cells"].sum(axis=0).reshape(bins, -1).sum(axis=1)
+        else:  # of a record: the first trials have their NEES
+            nees = arm["detailed_nees"]
+            counts = np.histogram(stats.chi2.cdf(nees[~np.isnan(nees)], arm.dimension("nees")), bins, (0, 1))[0]
         axis.stairs(counts * bins / max(counts.sum(), 1), np.linspace(0, 1, bins + 1),
                     **style.arm_style(place, len(arms)))
         tails[name] = 100 - 100 * float(arm.read("nees_covered", (slice(None), 2)).mean()) / max(arm.counted_trials, 1)

@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 
 from .. import means
 from .._file import FloatArray
-from ..study import Scenario
+from ..study import Scenario, Study
 from . import style
 from .steps import Arms, source
 from .style import Picture
@@ -88,11 +88,15 @@ BASELINES = ("fixed", "waypoints", "follow", "nearest", "random")  # controllers
 NO_PAIR = "no arm has that of a simpler controller and the same estimator beside it"
 
 
-def pairs(names: Sequence[str], wanted: Sequence[str] | None = None) -> list[tuple[str, str]]:
+def pairs(
+    names: Sequence[str], wanted: Sequence[str] | None = None, of_records: bool = False
+) -> list[tuple[str, str]]:
     """(A, B) of the differences A - B, as `credence compare` chooses them: the two arms that are wanted; else each arm
-    with the arm of a simpler controller and the same estimator."""
+    with the arm of a simpler controller and the same estimator, of records each with the first."""
     if wanted is not None and len(wanted) == 2:
         return [(wanted[0], wanted[1])]
+    if of_records:
+        return [(name, names[0]) for name in names[1:]]
     found: list[tuple[str, str]] = []
     for arm in names:
         controller = arm.partition(".")[0]
@@ -102,9 +106,11 @@ def pairs(names: Sequence[str], wanted: Sequence[str] | None = None) -> list[tup
     return found
 
 
-def need_pairs(names: Sequence[str], wanted: Sequence[str] | None, option: str) -> list[tuple[str, str]]:
+def need_pairs(
+    names: Sequence[str], wanted: Sequence[str] | None, option: str, of_records: bool = False
+) -> list[tuple[str, str]]:
     """The same, which refuses where there are none."""
-    if found := pairs(names, wanted):
+    if found := pairs(names, wanted, of_records):
         return found
     raise ValueError(f"invalid {option} ({NO_PAIR}). Choose two: arms=[A, B] of {', '.join(names)}.")
 
@@ -112,7 +118,7 @@ def need_pairs(names: Sequence[str], wanted: Sequence[str] | None, option: str) 
 def paired(scenario: Scenario, arms: Arms, width: float, *, column: str = "trace_P",
            wanted: Sequence[str] | None = None) -> Picture:
     """Differences A - B of a column, trial by trial: the curve crosses 0 at the share of trials in which A has less."""
-    found = need_pairs(list(arms), wanted, "kind=paired")
+    found = need_pairs(list(arms), wanted, "kind=paired", bool(Study(scenario.group.file).records))
     picture, axis = style.one_panel(width)
     unit, less, reach, scale, entries = "", {}, 0.0, 0.0, []
     for index, (a, b) in enumerate(found):

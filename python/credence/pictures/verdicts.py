@@ -11,7 +11,7 @@ import numpy as np
 
 from .._file import FloatArray
 from ..arm import Arm
-from ..study import Scenario
+from ..study import Scenario, Study
 from . import program, style
 from .steps import Arms, source
 from .style import Picture
@@ -22,7 +22,8 @@ TICKS = (1, 2, 0.5, 4, 0.25, 1.4, 0.7, 1.2, 0.85, 1.1, 0.9, 1.25, 0.8)  # the so
 
 
 def _report(scenario: Scenario, arms: Arms, credence: str | None) -> dict[str, dict[str, Any]]:
-    found = program.report(str(scenario.group.file.filename), credence)
+    study = Study(scenario.group.file)
+    found = program.report(study.path, credence, study.records)
     return {name: found[scenario.name, name] for name in arms}
 
 
@@ -57,7 +58,7 @@ def verdicts(scenario: Scenario, arms: Arms, width: float, *, credence: str | No
         axis.axhline(row - 0.5, color=style.BAND, linewidth=0.5, zorder=0)
     style.spread_out(axis.xaxis, drawn)
     axis.set_yticks(range(len(groups)), groups)
-    axis.set(ylim=(len(groups) - 0.5, -0.5), ylabel="component group",
+    axis.set(ylim=(len(groups) - 0.5, -0.5), ylabel="component group" if len(groups) > 1 else "group",
              xlabel="NEES / dimension, mean over trials and steps")
     style.key(axis, [*entries, style.band_entry(f"within the margin of {100 * margin:g} %")], width)
     picture.title(_verdicts(parts), f"{source(scenario)}; bars: 95 % intervals")
@@ -76,7 +77,7 @@ def ratio_map(scenario: Scenario, arms: Arms, width: float, *, arm: str | None =
     reach = float(np.clip(np.nanmax(np.abs(logs)), *REACH))
     _cells(picture, axis, _thinned_columns(logs), arms[name][1], reach)
     axis.set_yticks(range(len(groups)), groups)
-    axis.set(ylim=(len(groups) - 0.5, -0.5), ylabel="component group")
+    axis.set(ylim=(len(groups) - 0.5, -0.5), ylabel="component group" if len(groups) > 1 else "group")
     row, column = np.unravel_index(np.nanargmax(np.abs(logs)), logs.shape)
     picture.title(f"{name} is {part['verdict']}: NEES / dimension is farthest from 1 with {ratios[row, column]:.2f}, "
                   f"of {groups[row]} at step {int(arms[name][1]['step'][column])}", source(scenario))

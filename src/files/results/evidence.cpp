@@ -149,7 +149,7 @@ std::vector<std::string> evidence_links(const ScenarioResults& results) {
 void write_evidence(const Handle& group, const EvidenceDimensions& dimensions, const ScenarioResults& results,
                     const ArmResults& arm) {
     write_coverage(group, dimensions.step, results, arm);
-    if (distribution_counted(results.steps())) {
+    if (distribution_counted(results.steps()) && !arm.totals.cells.empty()) {  // records have exact distances
         auto cell = numbered<std::int32_t>(group, "cell", 0, distribution_cells,
                                            "cell of chi-square; every one is as probable as any other");
         hdf5::new_variable(group, cells_name(results), arm.totals.cells, {&dimensions.step, &cell},

@@ -2,6 +2,7 @@
 
 #include <credence/text.hpp>
 
+#include "files/hdf5/read.hpp"
 #include "files/results/evidence.hpp"
 #include "files/results/format.hpp"
 #include "files/results/sums.hpp"
@@ -110,6 +111,9 @@ void write_series(const Handle& group, const Dimension& step, const Dimension& p
         write_parts("_total", totals.sum, {&step, &part}, {total, series.unit});
         write_parts("_square_total", totals.square_sum, {&step, &part}, {total + " of its square", square});
     }
+    if (!totals.present.empty())  // of a record
+        hdf5::new_variable(group, series.name + "_count", totals.present, {&step},
+                           {series.long_name + ": trials with a value", "1"});
     write_parts("_run_square_total", {totals.run_square_sum}, {&part},
                 {total + " of the square of its sum over a trial's steps", square});
 }
@@ -154,7 +158,9 @@ void write_study(const Handle& root, const Study& study, const RunFacts& run) {
     hdf5::write_number<std::int8_t>(root, "complete", study.complete ? 1 : 0);
     if (keep_of(study) != Keep::trials) hdf5::write_text(root, "keep", keep_name(keep_of(study)));
     for (const ScenarioResults& results : study.scenarios) {
-        const Handle group = new_scenario_group(root, results.scenario);
+        const std::string& name = results.scenario.name;  // each arm of records has results of its own
+        const Handle group = hdf5::has_link(root, name) ? hdf5::open_group(root, name)
+                                                        : new_scenario_group(root, results.scenario);
         const WithTotals with_totals(results);
         for (const ArmResults& arm : (*with_totals).arms) write_arm(group, *with_totals, arm);
     }
