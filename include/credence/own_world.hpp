@@ -31,9 +31,10 @@
 //   other
 //
 // run is called from several threads at once and must not keep anything from call to call, read clocks or files, or
-// draw from anywhere else: a block of trials is a pure function of scenario, root seed and index. Its
-// series are the same bits on one machine for any number of threads; over machines they are so where its own
-// arithmetic is.
+// draw from anywhere else: a block of trials is a pure function of scenario, root seed and index. Trial 0 runs twice
+// when a study begins, and is refused where it does not repeat itself. Its series are the same bits on one machine for
+// any number of threads; over machines they are so where its own arithmetic is. What run throws ends the study, with
+// what is committed kept; the message names the trial.
 
 #include <credence/detail/lanes_of.hpp>
 #include <credence/detail/own_simulation.hpp>
@@ -73,6 +74,13 @@ constexpr bool meets_the_world_contract() {
     static_assert(RunsInLanes<W> || requires(const Settings s, OwnTrial& trial) { W::run(s, trial); },
                   "a world has static run(const Settings&, OwnTrial&), or as a template run(const Settings&, "
                   "OwnTrialOf<Real>&)");
+    static_assert(!requires { W::keys(OwnKeys<Settings>()); },
+                  "a world's keys(OwnKeys<Settings>&) adds to the list that it is given, not to a copy");
+    static_assert(!requires(Settings s) { W::columns(s); } || requires(const Settings s) {
+                      { W::columns(s) } -> std::same_as<std::vector<Column>>;
+                  }, "a world's columns(const Settings&) takes settings that are const, and gives a vector of Column");
+    static_assert(!requires(Settings s) { W::validate(s); } || requires(const Settings s) { W::validate(s); },
+                  "a world's validate(const Settings&) takes settings that are const");
     return true;
 }
 

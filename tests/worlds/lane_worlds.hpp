@@ -126,18 +126,20 @@ private:
     }
 };
 
-/// A filter of nine states, whose products Eigen computes by its kernels for larger matrices.
-struct Wide {
+/// A filter of nine states or more, whose products Eigen computes by its kernels for larger matrices, and which are too
+/// large for its stack from 46 on, of doubles from 129 on.
+template <int n>
+struct WideOf {
     struct Settings {
         double period = 0.1;
     };
-    static constexpr const char* name = "wide";
+    static constexpr const char* name = n == 9 ? "wide" : n == 48 ? "wide48" : "wide132";
     static void keys(credence::OwnKeys<Settings>& keys) {
         keys.real("wide.period", &Settings::period, 0, 1, "of a step");
     }
     static std::vector<credence::Component> components(const Settings&) {
         std::vector<credence::Component> all;
-        for (int i = 0; i < 9; ++i) all.push_back({"x" + std::to_string(i), "m"});
+        for (int i = 0; i < n; ++i) all.push_back({"x" + std::to_string(i), "m"});
         return all;
     }
     static std::vector<credence::ComponentGroup> groups(const Settings&) {
@@ -149,28 +151,28 @@ struct Wide {
 
     template <class Real>
     static void run(const Settings& s, credence::OwnTrialOf<Real>& trial) {
-        using State = Eigen::Matrix<Real, 9, 1>;
-        using Square = Eigen::Matrix<Real, 9, 9>;
+        using State = Eigen::Matrix<Real, n, 1>;
+        using Square = Eigen::Matrix<Real, n, n>;
         Square F = Square::Identity();
         F.template block<3, 3>(0, 3).diagonal().setConstant(s.period);
         F.template block<3, 3>(3, 6).diagonal().setConstant(s.period);
-        Eigen::Matrix<double, 3, 9> H = Eigen::Matrix<double, 3, 9>::Zero();
-        H.leftCols<3>().setIdentity();
+        Eigen::Matrix<double, 3, n> H = Eigen::Matrix<double, 3, n>::Zero();
+        H.template leftCols<3>().setIdentity();
         State x, estimate = State::Zero();
-        for (int i = 0; i < 9; ++i) x(i) = trial.normal(0, 0, i)(0);
+        for (int i = 0; i < n; ++i) x(i) = trial.normal(0, 0, i)(0);
         Square P = Square::Identity();
         for (int k = 1; k < trial.poses(); ++k) {
             x = F * x;
             estimate = F * estimate;
             P = F * P * F.transpose();
-            for (int i = 6; i < 9; ++i) {
+            for (int i = 6; i < n; ++i) {
                 x(i) += 0.1 * trial.normal(1, k, i)(0);
                 P(i, i) += 0.01;
             }
             Eigen::Matrix<Real, 3, 1> nu = H * (x - estimate);
             for (int i = 0; i < 3; ++i) nu(i) += trial.normal(2, k, i)(0);
             const Eigen::Matrix<Real, 3, 3> S = H * P * H.transpose() + Eigen::Matrix3d::Identity();
-            const Eigen::Matrix<Real, 9, 3> K = P * H.transpose() * credence::inverse(S);
+            const Eigen::Matrix<Real, n, 3> K = P * H.transpose() * credence::inverse(S);
             estimate += K * nu;
             const Square I_KH = Square::Identity() - K * H;
             P = I_KH * P * I_KH.transpose() + K * K.transpose();
@@ -180,4 +182,6 @@ struct Wide {
 };
 
 CREDENCE_WORLD(Troubled);
-CREDENCE_WORLD(Wide);
+CREDENCE_WORLD(WideOf<9>);
+CREDENCE_WORLD(WideOf<48>);
+CREDENCE_WORLD(WideOf<132>);

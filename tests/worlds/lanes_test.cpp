@@ -22,7 +22,9 @@ namespace {
 
 const bool added = [] {
     add_own_world<Troubled>();
-    add_own_world<Wide>();
+    add_own_world<WideOf<9>>();
+    add_own_world<WideOf<48>>();
+    add_own_world<WideOf<132>>();
     return true;
 }();
 
@@ -219,7 +221,18 @@ TEST_CASE("lanes: a world that is no template has the same bits in every target"
     }
 }
 
-TEMPLATE_TEST_CASE("lanes: a filter is that of one trial at a time, to 1e-12", "", Tracker, Wide) {
+TEMPLATE_TEST_CASE("lanes: a state that is too large for Eigen's stack is judged as any other", "", WideOf<48>,
+                   WideOf<132>) {
+    const Scenario scenario =
+        read_scenario_text("[scenario]\nworld = " + std::string(TestType::name) + "\nposes = 3\n", "test", "mine");
+    const Block one = one_at_a_time<TestType>(scenario, {}, 9);
+    for (const std::string& target : target_names()) {
+        CAPTURE(target);
+        check_same(in_lanes(scenario, target, 9), one, scenario, 1e-12);
+    }
+}
+
+TEMPLATE_TEST_CASE("lanes: a filter is that of one trial at a time, to 1e-12", "", Tracker, WideOf<9>) {
     const Scenario scenario = of_world(TestType::name);
     const Block one = one_at_a_time<TestType>(scenario, {}, 256);
     for (const std::string& target : target_names())

@@ -1,10 +1,15 @@
 #pragma once
 // Module worlds: packs of lanes as scalars of Eigen's matrices, which may be mixed with matrices of doubles. What Eigen
-// decides by branching on a scalar is refused with a sentence that says what to write instead.
+// decides by branching on a scalar is refused with a sentence that says what to write instead; so is namespace std.
 
 #include <credence/detail/functions.hpp>
 
 #include <Eigen/Dense>
+
+#include <algorithm>
+#include <concepts>
+#include <cstddef>
+#include <utility>
 
 namespace Eigen {
 
@@ -42,6 +47,36 @@ struct compute_default_alignment<credence::Lane<W>, size> {
 template <int W>
 struct compute_default_alignment<credence::Lane<W>, Dynamic> {
     enum { value = 0 };
+};
+
+/// Matrices that are too large for the stack, which Eigen refuses, have their numbers elsewhere: of packs all beyond
+/// 32 kB, as a filter has many of them, of doubles those that Eigen refuses.
+template <class T, int size>
+constexpr bool is_large =
+    size > (credence::is_pack(static_cast<const T*>(nullptr)) ? 32768 : 131072) / static_cast<int>(sizeof(T));
+template <class T, int size>
+    requires(std::same_as<T, double> && is_large<T, size>)
+struct compute_default_alignment<T, size> {
+    enum { value = 0 };
+};
+template <class T, int size, int options>
+    requires is_large<T, size>
+struct plain_array<T, size, options, 0> {
+    T* array = new T[size];
+
+    plain_array() = default;
+    explicit plain_array(constructor_without_unaligned_array_assert) {}
+    plain_array(const plain_array& other) { *this = other; }
+    plain_array(plain_array&& other) noexcept : array(std::exchange(other.array, nullptr)) {}
+    plain_array& operator=(const plain_array& other) {
+        std::copy_n(other.array, size, array);
+        return *this;
+    }
+    plain_array& operator=(plain_array&& other) noexcept {
+        std::swap(array, other.array);
+        return *this;
+    }
+    ~plain_array() { delete[] array; }
 };
 
 /// Products of larger matrices go coefficient by coefficient, too: Eigen's kernels for them cannot mix packs with
@@ -107,5 +142,27 @@ auto select(AnyMask mask, const Eigen::MatrixBase<Yes>& yes, [[maybe_unused]] in
     return select(mask, yes, Yes::Zero(yes.rows(), yes.cols()));
 }
 
+/// What the functions of namespace std take in place of a pack, so that the compiler can say what to write.
+struct OneNumber {
+    OneNumber(double) {}
+    template <int W>
+    OneNumber(Lane<W>) {
+        static_assert(W < 0,
+                      "functions of namespace std take one number, and a Real has several: write credence::sqrt, sin, "
+                      "cos, atan2, exp, log, abs, min or max, and powers and the like by these");
+    }
+};
+
 }  // namespace CREDENCE_TARGET
 }  // namespace credence
+
+namespace std {
+#define CREDENCE_REFUSE(function)         \
+    double function(credence::OneNumber); \
+    double function(credence::OneNumber, credence::OneNumber);
+CREDENCE_REFUSE(sqrt) CREDENCE_REFUSE(cbrt) CREDENCE_REFUSE(exp) CREDENCE_REFUSE(log) CREDENCE_REFUSE(pow)
+CREDENCE_REFUSE(hypot) CREDENCE_REFUSE(sin) CREDENCE_REFUSE(cos) CREDENCE_REFUSE(tan) CREDENCE_REFUSE(asin)
+CREDENCE_REFUSE(acos) CREDENCE_REFUSE(atan) CREDENCE_REFUSE(atan2) CREDENCE_REFUSE(abs) CREDENCE_REFUSE(fabs)
+CREDENCE_REFUSE(fmod) CREDENCE_REFUSE(remainder) CREDENCE_REFUSE(isfinite) CREDENCE_REFUSE(isnan)
+#undef CREDENCE_REFUSE
+}  // namespace std

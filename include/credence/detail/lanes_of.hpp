@@ -44,7 +44,9 @@ RunPack lanes_of() {
 }  // namespace CREDENCE_TARGET
 }  // namespace credence
 
-#define CREDENCE_WORLD(World) template credence::RunPack credence::CREDENCE_TARGET::lanes_of<World>()
+#define CREDENCE_WORLD(World)                                   \
+    static_assert(credence::meets_the_world_contract<World>()); \
+    template credence::RunPack credence::CREDENCE_TARGET::lanes_of<World>()
 
 #else
 
