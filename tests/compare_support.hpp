@@ -36,6 +36,7 @@ inline CompareReport compared(const std::vector<StudyFile>& files, const std::st
     const auto compare = [&](const std::vector<StudyFile>& either) {
         return compare_studies(either, arms.empty() ? std::nullopt : std::optional(read_arms(arms, paths)));
     };
+    if (files.front().study.trials == 0) return compare(files);  // of names alone
     std::vector<StudyFile> read = files;
     for (StudyFile& file : read) file.study = read_back(file.study);
     const CompareReport in_memory = compare(files), of_files = compare(read);

@@ -53,7 +53,8 @@ int judge(const Parsed& parsed) {
     std::vector<std::string> records;
     for (const std::string& path : parsed.arguments) {
         check_kind(path, {FileKind::record});
-        std::ranges::copy(record_file(path) == path ? records_in(path) : std::vector{path}, std::back_inserter(records));
+        const bool is_file = record_file(path) == path;
+        std::ranges::copy(is_file ? records_in(path) : std::vector{path}, std::back_inserter(records));
     }
     std::vector<Report> reports;
     RunFacts facts;

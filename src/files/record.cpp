@@ -157,10 +157,12 @@ Record read_in_chart(const std::string& path, const std::function<void(const Pro
                            [&](const Handle& root) {
                                return of_arm(root, named.first, named.second, [&](const Handle& group) {
                                    const FileSource source(group);
-                                   Record record = read_in_chart(
-                                       RecordReader(source), path, progress, segments, chart,
-                                       [path, segments](int again) { return read_in_chart(path, {}, segments, again); });
-                                   if (source.has_attribute("log", "")) record.log = source.text("log");
+                                   const auto again = [path, segments](int other) {
+                                       return read_in_chart(path, {}, segments, other);
+                                   };
+                                   Record record =
+                                       read_in_chart(RecordReader(source), path, progress, segments, chart, again);
+                                   if (source.has_attribute("log", "")) record.log = source.text("log", "");
                                    return record;
                                });
                            });

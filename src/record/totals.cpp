@@ -366,8 +366,9 @@ Record RecordTotals::finish() {
                           copies = std::to_string(copies_found_);
         std::vector<std::string>& said = record_.results.not_judged;
         said.insert(said.begin(), "Only " + distinct + " of the " + all + " runs are distinct: " + copies +
-                                      " have the errors of another one, to the last bit. A copy is not independent and "
-                                      "counts as failed: give each run once, and draw the random numbers of each anew.");
+                                      " have the errors of another one, to the last bit. A copy is not independent "
+                                      "and counts as failed: give each run once, and draw the random numbers of each "
+                                      "anew.");
     }
     if (keeps_nees_ || !keeps_cells_) arm().totals.distribution_distance.assign(kept_steps(), nan);
     for (std::size_t k = 0; k < nees_.size(); ++k)

@@ -237,9 +237,9 @@ std::string divergence_of(const Evidence& evidence) {
     const double first = mean(state.step.begin(), state.step.begin() + (are_many ? 1 : some)),
                  last = mean(state.step.end() - some, state.step.end());
     if (!(last > (are_many ? 3 : 10) * first)) return {};
-    return formatted("the filter diverges, NEES/dim is %.2g at first and %.2g at last: is a Jacobian wrong, or does P not "
-                     "know of a drift or of process noise? Finite differences show a wrong one (in C++ jacobian_mismatch "
-                     "of credence/filters.hpp)", first, last);
+    return formatted("the filter diverges, NEES/dim is %.2g at first and %.2g at last: is a Jacobian wrong, or does P "
+                     "not know of a drift or of process noise? Finite differences show a wrong one (in C++ "
+                     "jacobian_mismatch of credence/filters.hpp)", first, last);
 }
 
 std::vector<std::string> causes_of(const Evidence& evidence, const Limits& limits) {

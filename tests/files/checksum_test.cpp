@@ -80,12 +80,12 @@ TEST_CASE("checksum: a value that changes after the file was checked is not read
     const ScenarioResults& results = study.scenarios[0];
     std::size_t column = 0;
     while (results.columns[column].name != "mean_trace_P") ++column;
-    CHECK(column_values(results.arms[0], column, 0, 256).size() == 256);
+    CHECK(results.arms[0].columns.values(column, 0, 256).size() == 256);
     for (const std::int64_t first : {256, 290, 299, 0})
-        CHECK(refusal<InputError>([&] { column_values(results.arms[0], column, first, 300 - first); }) ==
+        CHECK(refusal<InputError>([&] { results.arms[0].columns.values(column, first, 300 - first); }) ==
               path + ": /one/fixed.ekf/mean_trace_P: is damaged: its values have changed since they were checked. " +
                   "Run the study again, or give an undamaged copy.");
-    CHECK_THROWS_AS(column_values(results.arms[0], column, 0, 301), InputError);
+    CHECK_THROWS_AS(results.arms[0].columns.values(column, 0, 301), InputError);
 }
 
 TEST_CASE("checksum: a file that was written before there were any reads back") {
@@ -103,8 +103,8 @@ TEST_CASE("checksum: a file that was written before there were any reads back") 
     CHECK(study_hash(then) == study_hash(now));
     for (std::size_t s = 0; s < now.scenarios.size(); ++s)
         for (std::size_t a = 0; a < now.scenarios[s].arms.size(); ++a)
-            CHECK(column_values(then.scenarios[s].arms[a], 0, 0, 300) ==
-                  column_values(now.scenarios[s].arms[a], 0, 0, 300));
+            CHECK(then.scenarios[s].arms[a].columns.values(0, 0, 300) ==
+                  now.scenarios[s].arms[a].columns.values(0, 0, 300));
 }
 
 TEST_CASE("hdf5: where HDF5 gets no memory, the message says so") {

@@ -171,7 +171,7 @@ TEST_CASE("compare: trials that failed in one arm are no pairs, and the text say
     fail(study.scenarios[0], 1, 10, 20);
     study.scenarios[0].arms[0].columns.in_memory()[column_status][100] = static_cast<double>(Status::lost);
     recount(study.scenarios[0]);
-    const CompareReport report = compared({{"failed.h5", study}});
+    const CompareReport report = compare_studies({{"failed.h5", study}}, std::nullopt);
     const ComparedPair& pair = report.pairs[0];
     CHECK(pair.pairs() == 270);
     CHECK(pair.a.failed == 20);
@@ -186,7 +186,8 @@ TEST_CASE("compare: trials that failed in one arm are no pairs, and the text say
                          Contains("note: 1 trial of heading-straight/fixed.ekf is lost"));
     CHECK(text.find("WARNING") < text.find("trace_P:"));
     fail(study.scenarios[0], 0, 0, 300);
-    const CompareReport none = compared({{"failed.h5", study}}, "greedy.ekf,fixed.ekf");
+    const CompareReport none =
+        compare_studies({{"failed.h5", study}}, read_arms("greedy.ekf,fixed.ekf", {"failed.h5"}));
     CHECK_THAT(compare_text(none), Contains("no pairs, nothing to compare") && !Contains("nan"));
     CHECK(Json::parse(compare_json(none))[0]["trace_P"]["mean"].is_null());
     CHECK_THAT(compare_csv(none), Contains("heading-straight,greedy.ekf,fixed.ekf,trace_P,dm^2 + rad^2,0,,,,,"));
@@ -195,8 +196,8 @@ TEST_CASE("compare: trials that failed in one arm are no pairs, and the text say
 TEST_CASE("compare: the conclusion names every column that differs, and the JSON lists them by their direction") {
     Study study = new_study({matched()}, 1);
     extend(study.scenarios[0], 400);
-    auto& planned = study.scenarios[0].arms[1].columns;
-    auto& fixed = study.scenarios[0].arms[0].columns;
+    auto& planned = study.scenarios[0].arms[1].columns.in_memory();
+    auto& fixed = study.scenarios[0].arms[0].columns.in_memory();
     for (std::size_t i = 0; i < 400; ++i) {
         const auto number = static_cast<double>(i);
         fixed[column_trace_P][i] = planned[column_trace_P][i] = number;

@@ -64,9 +64,9 @@ public:
         for (std::size_t s = 0; s < scenarios_.size(); ++s) {
             const ScenarioResults& results = part.scenarios[s];
             if (const auto shared = scenarios_[s].shared(results.blocks))
-                throw InputError("cannot merge " + paths_[file] + " with " + paths_[shared->file] + " (both have block " +
-                                 std::to_string(shared->block) + " of scenario " + results.scenario.name +
-                                 "). Give files of which no two have the same trials.");
+                throw InputError("cannot merge " + paths_[file] + " with " + paths_[shared->file] +
+                                 " (both have block " + std::to_string(shared->block) + " of scenario " +
+                                 results.scenario.name + "). Give files of which no two have the same trials.");
             scenarios_[s].add(results, file);
         }
     }

@@ -50,7 +50,8 @@ bool CheckedStep::whole(const ComponentGroup& group) const {
 }
 
 std::string component_name(const RecordShape& shape, int j) {
-    return shape.components.empty() ? "x" + std::to_string(j) : shape.components[static_cast<std::size_t>(j)].name;
+    return shape.components.empty() ? std::string("x") + std::to_string(j)
+                                    : shape.components[static_cast<std::size_t>(j)].name;
 }
 
 bool is_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix, double epsilon) {
