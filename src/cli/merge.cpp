@@ -14,9 +14,9 @@ const Command& merge_command() {
         "merge",
         "SHARD.h5... -o FILE.h5 [options]",
         "make one results file of the files of shards",
-        "\nThe files may come in any order, and no two may have the same block. The result is that of one run without\n"
-        "shards. Exit code 1 where blocks are missing: their numbers b say which shards I/N to run or to resume, those\n"
-        "with b mod N = I.\n",
+        "\nThe files may come in any order, and no two may have the same block. The result is that of one run\n"
+        "without shards. Exit code 1 where blocks are missing: their numbers b say which shards I/N to run or to\n"
+        "resume, those with b mod N = I.\n",
         {output_option("the results file to write", "FILE.h5"),
          {"overwrite", "", "replace a results file that exists"},
          {"quiet", "", "say nothing where it goes well"}}};
