@@ -398,6 +398,7 @@ def write_records(
             lengths = [shape[0] for segment, _ in fitting[arm] for _, _, shape in segment["form"] if shape]
             group = file if arms is None else file.create_group(arm)
             group.attrs["seed"] = np.uint64(seed)
+            _set_text(group.attrs, "arm", arm)
             record = _Record(group, layout, max(lengths, default=0), numbers)
             record.write(fitting[arm])
             record.write_failures({trial: one for (of, trial), one in failures.items() if of == arm})

@@ -121,7 +121,7 @@ def _judged(name: str, value: Any) -> Any:
 
 @doors.door(
     error=_judged, covariance=_judged, group_covariance=doors.mapping('{"pose": P}'), name=doors.title,
-    group_nees=doors.mapping('{"pose": nees}'), progress=doors.flag,
+    group_nees=doors.mapping('{"pose": nees}'), columns=doors.mapping('{"rmse": rmse}'), progress=doors.flag,
     **dict.fromkeys(
         ("margin", "margin_direction", "bias", "failed", "segments", "groups", "component_names", "component_units"),
         doors.plain,

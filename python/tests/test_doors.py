@@ -97,7 +97,7 @@ BAD = {
               "segments": [*NO_SHARE, "0", 1.5], "groups": [5, {5: [0]}, {"a": Odd()}, [5], "\udcff"],
               "component_names": [5, [5], ["\udcff"]], "component_units": [5, [5]], "name": NO_TEXT[:7],
               "progress": NO_FLAG, "group_covariance": NO_DICT, "group_nees": NO_DICT, "manifold": [5, [], "SE3"],
-              "chart": [5, "local"], "quaternion": [5, "wxyz"]},
+              "chart": [5, "local"], "quaternion": [5, "wxyz"], "columns": NO_DICT},
     "assert_consistent": {"within": [*NO_SHARE, 0, 1], "strict": NO_FLAG},
     "simulate": {"run": [None, 5, "x", Odd()], "arms": [[], 5, "calm", {"calm": 5}, {5: {}}, {}, {"a b": {}}],
                  "batch": [*NO_WHOLE[:6], 0, [], {}, Odd()], "resume": [*NO_FLAG, True], "failed": NO_SHARE,
@@ -236,9 +236,9 @@ TUNE = ["tune", "mine:run", "--free", "q=0.5:2", "--trials=4", "--held-out=30", 
         ([*SIMULATE, "-o", "mine.py/a.h5"], 2, "cannot write output=mine.py/a.h5 ("),
         ([*SIMULATE, "-o", "."], 2, "cannot write output=. (it is a folder). Name a file in it."),
         ([*SIMULATE, "--until", "nees_ratio"], 2, "invalid until=nees_ratio"),
-        ([*TUNE, "--picture", "missing/a.png"], 2, "cannot write picture=missing/a.png (there is no folder"),
+        ([*TUNE, "--picture", "missing/a.png"], 2, "cannot write missing/a.png (there is no folder"),
         (["tune", "mine:log", "--free", "q=1:2"], 1, "the function failed with q=1.41421 (OSError: "),
-        (["judge", "a.csv", "--names", "error=e", "--record", "missing/a.h5"], 2, "cannot write record=missing/a.h5 ("),
+        (["judge", "a.csv", "--names", "error=e", "--record", "missing/a.h5"], 2, "cannot write missing/a.h5 (there is no folder"),
     ],
 )
 def test_a_command_refuses_in_one_line_before_any_work(words, code, said):
@@ -280,18 +280,15 @@ def test_modules_that_are_missing_are_named():
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="mounts need root")
-def test_memory_that_cannot_be_shared_is_said():
+def test_memory_need_not_be_shared():
     read_only = ["unshare", "-m", "bash", "-c", 'mount -t tmpfs -o ro none /dev/shm && exec "$0" "$@"', sys.executable,
                  "-m", "credence", *SIMULATE]  # fmt: skip
     here = {"env": environment(str(pathlib.Path.cwd())), "capture_output": True, "text": True, "timeout": 120}
     if subprocess.run([*read_only[:4], "mount -t tmpfs none /dev/shm"], capture_output=True, check=False).returncode:
         pytest.skip("mounts are not allowed")
-    done = subprocess.run(read_only, check=False, **here)
-    assert (done.returncode, done.stderr) == (0, "")
-    done = subprocess.run([*read_only, "--executor=2"], check=False, **here)
-    assert done.returncode == 1
-    assert done.stderr.startswith("credence simulate: cannot start processes (")
-    assert done.stderr.count("\n") == 1
+    for executor in ([], ["--executor=2"]):
+        done = subprocess.run([*read_only, *executor], check=False, **here)
+        assert (done.returncode, done.stderr) == (0, "")
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])

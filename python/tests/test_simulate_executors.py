@@ -168,7 +168,9 @@ def test_workers_that_are_killed_at_random_times(tmp_path):
     assert len(killed) == KILLS
     assert study.failures == []
     assert multiprocessing.active_children() == []
-    credence.simulate(filters.slow, trials=trials, arms={"right": {"seconds": 0}}, output=tmp_path / "b.h5")
+    credence.simulate(
+        filters.slow, trials=trials, arms={"right": {"seconds": seconds}}, executor=2, output=tmp_path / "b.h5"
+    )
     assert is_same(tmp_path / "a.h5", tmp_path / "b.h5")
 
 

@@ -76,6 +76,11 @@ def test_columns_that_do_not_differ_are_not_concluded_on(simulated):
     assert "trace_P" in pair["higher"]
 
 
+def file_of(arm):
+    """Its path is FILE:ARM."""
+    return pathlib.Path(arm.path.rpartition(":")[0])
+
+
 def test_seeds_and_trials_that_differ_are_no_pairs(simulated, program, tmp_path):
     other = credence.simulate(path, trials=300, seed=2, arms=ARMS, output=tmp_path / "other.h5")
     assert "simulations of seeds 1 and 2 (" in refusal(lambda: credence.compare(simulated, other))
@@ -87,11 +92,11 @@ def test_seeds_and_trials_that_differ_are_no_pairs(simulated, program, tmp_path)
     huge = [credence.simulate(path, trials=20, seed=2**64 - i, arms=ARMS) for i in (1, 2)]
     assert f"/@seed: is {2**64 - 2}" in refusal(lambda: credence.compare(huge[0]["fixed"], huge[1]["fixed"]))
     moved = tmp_path / "moved.h5"
-    moved.write_bytes(pathlib.Path(files[0]).read_bytes())
+    moved.write_bytes(file_of(simulated["fixed"]).read_bytes())
     with h5py.File(moved, "r+") as file:
-        file["trial"][17] = 1000
+        file["fixed/trial"][17] = 1000
     assert "/trial: differs from that of the first record in entry 17" in refusal(
-        lambda: credence.compare(files[0], moved))
+        lambda: credence.compare(files[0], f"{moved}:fixed"))
     fewer = credence.simulate(path, trials=200, arms=ARMS)
     assert "these are other runs" in refusal(lambda: credence.compare(simulated["fixed"], fewer["fixed"]))
 
@@ -148,7 +153,7 @@ def test_report_says_what_judge_says(simulated, tmp_path):
     assert credence.report(simulated["fixed"]).json == simulated["fixed"].verdict.json
     assert credence.report(simulated, margin=0.5).json[0]["margin"] == 0.5
     damaged = tmp_path / "damaged.h5"
-    damaged.write_bytes(pathlib.Path(simulated["fixed"].path).read_bytes()[:700])
+    damaged.write_bytes(file_of(simulated["fixed"]).read_bytes()[:700])
     assert "damaged.h5" in refusal(lambda: credence.open(damaged), ValueError)
     assert "resume=True" in refusal(lambda: credence.resume(simulated.study))
 

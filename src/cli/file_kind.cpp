@@ -1,6 +1,7 @@
 #include "cli/file_kind.hpp"
 
 #include "files/hdf5/read.hpp"
+#include "files/record.hpp"
 #include "base/program_name.hpp"
 #include "base/readable_file.hpp"
 #include "base/text_stream.hpp"
@@ -68,7 +69,8 @@ Words words_of(FileKind kind, const std::string& path) {
 
 }  // namespace
 
-FileKind kind_of(const std::string& path) {
+FileKind kind_of(const std::string& given) {
+    const std::string path = record_file(given);
     std::string start;
     try {
         constexpr std::size_t enough = 4096;

@@ -10,6 +10,7 @@ namespace credence::cli {
 /// `unknown` includes files that cannot be read: the command itself reports why.
 enum class FileKind { scenario, results, trajectories, record, noise, journal, unknown };
 
+/// Of a record also by the path FILE:ARM.
 FileKind kind_of(const std::string& path);
 
 /// Throws InputError, naming the command that reads the file, where the file is of a known kind that is not one of

@@ -6,14 +6,13 @@ import os
 import pathlib
 import tempfile
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 import matplotlib
 
 from .. import _doors as doors
 from .._file import RESULTS, open_hdf5, records_in
 from ..grid import Grid
-from ..simulating import Simulation
 from ..study import Scenario, Study
 from ..study import open as open_study
 from ..trajectory import Trajectory, open_trajectories
@@ -22,6 +21,9 @@ from .place import place
 from .steps import accuracy, chi_square, coverage, nees, nis, trace
 from .style import Picture as Picture
 from .trials import distribution, paired
+
+if TYPE_CHECKING:
+    from ..simulating import Simulation
 
 OF_SCENARIO: dict[str, Callable[..., Picture]] = {
     "verdicts": verdicts.verdicts, "nees": nees, "nis": nis, "coverage": coverage, "chi_square": chi_square,
@@ -81,8 +83,9 @@ def plot(
     """
     if isinstance(what, str | os.PathLike):
         what = _first(what)
-    if isinstance(what, Simulation):
-        what = what.study
+    if hasattr(type(what), "verdicts"):  # a Simulation, whose module needs the compiled one
+        what = cast("Simulation", what).study
+    what = cast("Study | Scenario | Grid | Trajectory", what)
     if isinstance(what, Study):
         grids = what.grids
         if scenario is None and grids and kind in (None, "sweep"):
@@ -151,7 +154,7 @@ def _known(kinds: dict[str, Callable[..., Picture]], kind: str) -> Callable[...,
 
 
 @doors.door(
-    what=doors.file_or("Study", "Trajectory"), path=doors.output, trial=doors.whole(), scenario=doors.text,
+    what=doors.file_or("Study", "Simulation", "Trajectory"), path=doors.output, trial=doors.whole(), scenario=doors.text,
     arm=doors.text, ellipse=doors.text, frames_per_second=doors.whole(1, 1000), credence=doors.path,
     progress=doors.flag,
 )  # fmt: skip
@@ -201,7 +204,7 @@ def animate(
         animation.animate(what, str(path), ellipse=ellipse, frames_per_second=frames_per_second,
                           progress=progress)
         return path
-    if isinstance(what, Simulation) or what.records:
+    if hasattr(type(what), "verdicts") or what.records:
         raise ValueError("cannot run a trial of records again (`credence.run` did not make them). Choose a study.")
     scenario = scenario or next(iter(what))
     arm = arm_meant(what.scenarios[scenario], arm) if arm else list(what.scenarios[scenario])[-1]

@@ -11,6 +11,8 @@ import subprocess
 from collections.abc import Sequence
 from typing import Any
 
+from .._file import parted
+
 
 class NoProgram(RuntimeError):
     """Neither the compiled module nor the program is there, or it refused the file."""
@@ -52,7 +54,7 @@ def report(
 ) -> dict[tuple[str, str], dict[str, Any]]:
     """{(scenario, arm): its part of the report}; of records what is judged of them."""
     words = ("judge", *records, "--quiet") if records else ("report", path)
-    return _report(words, tuple(os.stat(one).st_mtime_ns for one in records or [path]), program)
+    return _report(words, tuple(os.stat(parted(one)[0]).st_mtime_ns for one in records or [path]), program)
 
 
 @functools.lru_cache(maxsize=2)

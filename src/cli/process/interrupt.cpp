@@ -37,7 +37,7 @@ Interrupt::Interrupt() {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP})
         if (signal != SIGHUP || !SignalHandler::ignored(SIGHUP))
             handlers_.emplace_back(signal, note_signal, SA_RESTART);
-    handlers_.emplace_back(SIGALRM, end_process);
+    if (ends_process) handlers_.emplace_back(SIGALRM, end_process);
 }
 
 bool Interrupt::came_after_block() {
