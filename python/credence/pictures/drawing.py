@@ -154,9 +154,9 @@ def _known(kinds: dict[str, Callable[..., Picture]], kind: str) -> Callable[...,
 
 
 @doors.door(
-    what=doors.file_or("Study", "Simulation", "Trajectory"), path=doors.output, trial=doors.whole(), scenario=doors.text,
-    arm=doors.text, ellipse=doors.text, frames_per_second=doors.whole(1, 1000), credence=doors.path,
-    progress=doors.flag,
+    what=doors.file_or("Study", "Simulation", "Trajectory"), path=doors.output, trial=doors.whole(),
+    scenario=doors.text, arm=doors.text, ellipse=doors.text, frames_per_second=doors.whole(1, 1000),
+    credence=doors.path, progress=doors.flag,
 )  # fmt: skip
 def animate(
     what: Study | Trajectory | str | os.PathLike[str],
