@@ -21,8 +21,12 @@ std::string& end_message = *new std::string;  // outlives the static objects
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler may touch nothing else");
 
 extern "C" void note_signal(int signal) {
-    if (signal_that_came.exchange(signal) == 0) alarm(in_blocks && ends_process ? 5 + 2 * longest_block : 0);
-    else if (ends_process) _exit(exit_at_once);
+    if (!ends_process) {  // alarms are another program's
+        signal_that_came = signal;
+        return;
+    }
+    if (signal_that_came.exchange(signal) != 0) _exit(exit_at_once);
+    if (in_blocks) alarm(5 + 2 * longest_block);
 }
 
 extern "C" void end_process(int) {
@@ -56,7 +60,7 @@ void Interrupt::begin_blocks(const std::string& text) {
 
 void Interrupt::end_blocks() {
     in_blocks = false;
-    alarm(0);
+    if (ends_process) alarm(0);
 }
 
 void Interrupt::keep_process() { ends_process = false; }
