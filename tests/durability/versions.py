@@ -105,8 +105,7 @@ class Versions:
             self.check_grown(file, done)
             self.counts["resumed"] += 1
             if file.name == "x.h5":
-                list(self.check_readers(file, ("merge", "x.h5", "-o", "y.h5", "--quiet"),
-                                        ("merge", "x.h5", "x.h5", "-o", "y.h5", "--quiet")))
+                list(self.check_readers(file, ("merge", "x.h5", "-o", "y.h5", "--quiet")))
 
     def run(self, file, *command):
         self.bench.empty()

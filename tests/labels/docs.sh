@@ -22,3 +22,4 @@ bash docs/build.sh >"$work/log" 2>&1 || { cat "$work/log"; exit 1; }
 bash experiments/in_the_wild/run.sh --short >"$work/wild" || { cat "$work/wild"; exit 1; }
 experiments=$PWD/experiments
 (cd "$work" && GALLERY=worlds/gallery bash "$experiments/worlds/run.sh" >verdicts)
+diff -u "$experiments/worlds/verdicts.txt" "$work/verdicts"
