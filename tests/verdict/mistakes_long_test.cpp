@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "calibration_support.hpp"
+#include "either_way.hpp"
 #include "synthetic.hpp"
 
 namespace credence::test::mistakes_long_test {
