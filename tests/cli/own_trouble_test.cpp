@@ -109,7 +109,7 @@ TEST_CASE("own world: one signal ends a run with a trial that goes on for ever, 
                                      Contains(" --resume\n"));
     CHECK(committed() > 20000);
     CHECK(test::own_program(here, "watch x.h5 --once") == 0);
-    CHECK_THAT(here.read("out"), Contains("    kf "));
+    CHECK_THAT(here.read("out"), Contains("  kf "));
 }
 
 }  // namespace credence::test::own_trouble_test

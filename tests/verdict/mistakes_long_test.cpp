@@ -100,7 +100,7 @@ TEST_CASE("mistakes: a trial whose P is not positive definite has no NEES, and n
     CHECK(evidence.groups.front().run.mean == Approx(mean).epsilon(1e-12));
 }
 
-TEST_CASE("mistakes: where the others are all lost and judged, those whose P is not positive definite alone failed") {
+TEST_CASE("mistakes: where the others are all lost they are judged, and counted beside those that failed") {
     const ScenarioResults results = replication(without_odometry(5e4, 1e-3), trials, 9);
     const ArmResults& arm = results.arms.front();
     const int bad = ended(arm, Status::covariance_not_positive_definite), lost = ended(arm, Status::lost);
@@ -108,9 +108,10 @@ TEST_CASE("mistakes: where the others are all lost and judged, those whose P is 
     REQUIRE(lost == trials - bad);
     const ArmReport report = report_arm(results, arm, evidence_of(results, arm), 9, 0.05);
     CHECK(report.evidence.trials == lost);
-    CHECK(report.failed_trials() == bad);
-    CHECK(report.cause->status == Status::covariance_not_positive_definite);
-    CHECK(report.cause->trials == bad);
+    CHECK(report.failed == bad);
+    CHECK(report.lost == lost);
+    CHECK(report.cause->status == Status::lost);
+    CHECK(report.cause->trials == lost);
 }
 
 TEST_CASE("mistakes: quantiles in a report are the sample's, not those of a normal of its mean and deviation") {
