@@ -69,7 +69,7 @@ print(study)
 # covariance that is right. `right` is *consistent*: NEES, every direction of the state and every bias are shown to lie
 # within the margins. `wrong` is *optimistic*: its errors are larger than its covariance says, and the lines below the
 # verdict say in which components, at which steps and by how much.
-# [How a verdict is reached](../statistics.md#verdict) and [what it says](../judge.md#what-it-says) have pages.
+# [How a verdict is reached](../statistics.md#verdict) and [how to read it](../reading.md) have pages.
 
 # %% [markdown]
 # ## Its picture

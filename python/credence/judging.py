@@ -161,7 +161,7 @@ def judge(
     """Say whether a filter's covariance can be believed, by its errors in many independent runs.
 
     `error` and `covariance` are enough for most filters; the other forms are those of a record [docs/judge.md]. Arrays
-    are anything that NumPy takes (xarray, pandas, lists); docs/python.md says what becomes of masks, units and names of
+    are anything that NumPy takes (xarray, pandas, lists); docs/theory/python.md says what becomes of masks, units and
     dimensions. Doubles and singles of any strides are read in place, a part at a time; other types are converted first.
     A single run may leave out the first dimension, and a list may hold runs of different lengths.
 

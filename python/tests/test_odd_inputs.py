@@ -1,4 +1,4 @@
-"""What odd inputs get: the table of docs/python.md, row by row."""
+"""What odd inputs get: the table of docs/theory/python.md, row by row."""
 
 from __future__ import annotations
 
@@ -241,7 +241,7 @@ def test_an_odd_input_gets_what_the_table_says(row, tmp_path):
 
 
 def test_the_table_has_these_rows():
-    page = pathlib.Path(__file__).parents[2] / "docs" / "python.md"
+    page = pathlib.Path(__file__).parents[2] / "docs" / "theory" / "python.md"
     table = page.read_text().partition("## What odd inputs get")[2].partition("\n\n#")[0]
     rows = re.findall(r"^\| (.+?) \| (taken|noted|refused)\b", table, re.MULTILINE)
     assert rows == [(row, outcome) for row, (_, outcome) in CASES.items()]

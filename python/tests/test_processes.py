@@ -1,4 +1,4 @@
-"""What processes do around the package: folders, forks, signals, threads and ends, as the table of docs/python.md."""
+"""What processes do around the package: folders, forks, signals, threads and ends, as docs/theory/python.md says."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from conftest import SCENARIO
 
 import credence
 
-PAGE = pathlib.Path(__file__).parents[2] / "docs" / "python.md"
+PAGE = pathlib.Path(__file__).parents[2] / "docs" / "theory" / "python.md"
 HEADING = "## What odd processes get"
 
 # What happens in the middle of a call finds `long_judge` at work on most machines, and `endless_run` on all.

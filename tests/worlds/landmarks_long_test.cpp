@@ -1,4 +1,4 @@
-// The world of landmarks [docs/landmarks.md]: its truth, first sight, and every estimator in it against dense matrices
+// The world of landmarks [docs/estimators.md]: its truth, first sight, and every estimator in it against dense matrices
 // on a state that grows.
 
 #include "landmark_run.hpp"
@@ -149,7 +149,7 @@ namespace {
 
 /// An estimator that carries beside its belief what a turn of everything about the origin does to it, by its own F, its
 /// own first sights and, where it turns its covariance after the update, by that; and notes the most that its own rows
-/// say of it [docs/theory/estimators.md, Landmarks]: 0 for a filter that does not believe to learn what it cannot.
+/// say of it [docs/estimators.md, Landmarks on a loop]: 0 for a filter that does not believe to learn what it cannot.
 template <template <class, class> class Type>
 struct Watched : Type<Heading, double> {
     using Base = Type<Heading, double>;

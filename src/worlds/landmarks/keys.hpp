@@ -1,5 +1,5 @@
 #pragma once
-// The keys of the world of landmarks [docs/landmarks.md].
+// The keys of the world of landmarks [docs/estimators.md, The world of landmarks].
 
 #include "worlds/landmarks/settings.hpp"
 #include "worlds/deformable/keys.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// The scenario of the world of landmarks [docs/landmarks.md]. One plain struct per concern; the defaults are the
+// The scenario of the world of landmarks [docs/estimators.md]. One plain struct per concern; the defaults are the
 // classical loop on which the extended Kalman filter is known to lose its consistency.
 //
 // Targets: lengths in `length_unit`, angles in radians; sigma is a standard deviation.

@@ -1,5 +1,5 @@
 #pragma once
-// One trial of one arm in the world of landmarks, poses in order [docs/landmarks.md]. It reads like
+// One trial of one arm in the world of landmarks, poses in order [docs/estimators.md]. It reads like
 // slam/trial/trial.hpp, and shares everything with it but the world: layout, belief, estimators, update, evaluation and
 // observers.
 

@@ -1,5 +1,5 @@
 #pragma once
-// The world of landmarks that stand about a loop [docs/landmarks.md]. The robot follows its loop to the letter;
+// The world of landmarks that stand about a loop [docs/estimators.md]. The robot follows its loop to the letter;
 // the noise is on what its filter is given of the motion, so that where each landmark comes into sight is known before
 // any trial.
 //
