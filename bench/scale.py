@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What studies cost: the numbers of docs/theory/scale.md. Standard library only.
+"""What studies cost: the measurements of docs/cluster.md. Standard library only.
 
 usage: scale.py [--credence build/credence] [--repeats 5] PART...
   cost    processor time of a million trials on one core, for each of the seed's scenarios, both arms
