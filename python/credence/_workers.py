@@ -78,7 +78,7 @@ def _serve(
 class _Processes:
     """Processes of our own, each with a pipe of its own: one that is killed, whenever it is, breaks only that pipe.
 
-    They are forks of this process where there are forks, so that the function of a notebook or a closure will do.
+    They are forked where the system can fork, so that the function of a notebook or a closure will do.
 
     Parameters
     ----------

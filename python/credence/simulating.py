@@ -672,7 +672,7 @@ def simulate(
     arms : dict of dict
         The options of `run` under each arm, such as ``{"right": {}, "calm": {"q": 0.04}}``.
     executor : int or executor
-        Where the trials run: by default in this process; in so many processes, which are forks of this one; or on an
+        Where the trials run: by default in this process; in so many forked worker processes; or on an
         executor that has the ``submit`` of concurrent.futures, such as a ProcessPoolExecutor, ``get_executor()`` of a
         client of Dask, or mpi4py's MPIPoolExecutor. Such workers must be able to import `run`.
     batch : bool or int

@@ -1,4 +1,4 @@
-// The published figures, on the recorded noise that they were made with [docs/model.md, Published figures]. The records
+// The published numbers, on the recorded noise that they were made with [docs/model.md, Published numbers]. The records
 // stay outside the project; CREDENCE_SHARED_DATA is their folder, an absolute path.
 
 #include "catch.hpp"
@@ -69,7 +69,7 @@ TEST_CASE("published: the table of results, trace(P) to all its digits and the u
     }
 }
 
-TEST_CASE("published: docs/model.md has the same figures") {
+TEST_CASE("published: docs/model.md has the same numbers") {
     const std::string page = bytes_of(CREDENCE_SOURCE "/docs/model.md");
     const auto text = [](const Cell& cell) {
         return std::string(cell.trace_P) + " / " + std::to_string(cell.unseen) + " |";
