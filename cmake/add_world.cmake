@@ -40,7 +40,7 @@ function(credence_add_world program)
     set(own ${program}_${name})
     file(CONFIGURE OUTPUT ${own}.cpp CONTENT "${includes}" @ONLY)
     add_library(${own} OBJECT ${CMAKE_CURRENT_BINARY_DIR}/${own}.cpp)
-    set_target_properties(${own} PROPERTIES UNITY_BUILD OFF INTERPROCEDURAL_OPTIMIZATION OFF)
+    set_target_properties(${own} PROPERTIES UNITY_BUILD OFF INTERPROCEDURAL_OPTIMIZATION OFF EXCLUDE_FROM_ALL ON)
     target_link_libraries(${own} PRIVATE $<TARGET_PROPERTY:${program},LINK_LIBRARIES>)
     target_include_directories(${own} PRIVATE $<TARGET_PROPERTY:${program},INCLUDE_DIRECTORIES>)
     # Without vectors of its own, Eigen adds doubles in one order everywhere; packs on the heap need their alignment.

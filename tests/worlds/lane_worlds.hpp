@@ -1,5 +1,5 @@
 #pragma once
-// Worlds that run in lanes and do what users' worlds may do, and what they must not: for lanes_test.cpp, which compares
+// Worlds that run in lanes and do what users' worlds may do, and what they must not: for lanes_long_test.cpp, which compares
 // them with the same worlds one trial at a time.
 
 #include <credence/own_world.hpp>

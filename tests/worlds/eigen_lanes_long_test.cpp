@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-namespace credence::test::eigen_lanes_test {
+namespace credence::test::eigen_lanes_long_test {
 
 namespace {
 
@@ -173,4 +173,4 @@ TEST_CASE("lanes: matrices are selected by lane") {
     CHECK(select(false, Eigen::Vector2d(1, 2), 0) == Eigen::Vector2d::Zero());
 }
 
-}  // namespace credence::test::eigen_lanes_test
+}  // namespace credence::test::eigen_lanes_long_test

@@ -16,7 +16,7 @@
 #include <cstdlib>
 #include <random>
 
-namespace credence::test::lanes_test {
+namespace credence::test::lanes_long_test {
 
 namespace {
 
@@ -317,4 +317,4 @@ TEST_CASE("lanes: what a world does wrong is said in the same words as of one tr
     }
 }
 
-}  // namespace credence::test::lanes_test
+}  // namespace credence::test::lanes_long_test
