@@ -11,7 +11,7 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 SECTIONS = {
-    "Verdicts": ("judge", "assert_consistent", "Verdict"),
+    "Verdicts": ("judge", "Record", "assert_consistent", "Verdict"),
     "Trials of a filter": ("simulate", "Run", "Simulation"),
     "What to change": ("tune", "Tuned"),
     "Studies of scenarios": ("run", "resume", "merge", "show", "report", "compare", "replay", "Report", "Comparison"),

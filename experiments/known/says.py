@@ -16,7 +16,7 @@ import credence
 
 def said(verdict: credence.Verdict) -> list[str]:
     """The verdict, the first finding or note, or else the reason why there is none, and the first hint."""
-    found = [re.sub(r" \([^()]* to [^()]*\)$", "", one["text"]) for one in [*verdict.findings, *verdict["cautions"]]]
+    found = [re.sub(r" \([^()]* to [^()]*\)$", "", one["text"]) for one in [*verdict["findings"], *verdict["cautions"]]]
     return [
         verdict.verdict,
         found[0] if found else verdict.json[0].get("reason", "-").split(";")[0],

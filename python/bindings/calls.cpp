@@ -6,6 +6,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <mutex>
@@ -52,6 +53,22 @@ void at_exit() {
 }
 
 }  // namespace
+
+cli::Values values_of(const cli::Command& command, const nb::dict& options) {
+    cli::Values values;
+    for (const auto& [key, value] : options) {
+        if (value.is_none() || value.is(nb::bool_(false))) continue;
+        std::string name = nb::str(key).c_str();
+        std::ranges::replace(name, '_', '-');
+        const auto takes_several = [&](const cli::Option& one) { return one.repeatable && one.long_name() == name; };
+        if (value.is(nb::bool_(true))) values[name] = {""};
+        else if (!nb::isinstance<nb::list>(value) || std::ranges::none_of(command.options, takes_several))
+            values[name] = {nb::str(value).c_str()};
+        else
+            for (const auto& one : nb::borrow<nb::list>(value)) values[name].push_back(nb::str(one).c_str());
+    }
+    return values;
+}
 
 Turn::Turn() {
     if (has_turn)

@@ -1,6 +1,8 @@
 #pragma once
 // How Python calls the library: one call at a time, without Python's lock, and with its errors as Python's.
 
+#include "cli/command.hpp"
+
 #include <credence/study.hpp>
 
 #include <nanobind/nanobind.h>
@@ -13,6 +15,10 @@ namespace nb = nanobind;
 
 /// What Python's `progress(done, total)` is called with; None: nothing is called.
 using Listener = std::optional<nb::callable>;
+
+/// A command's options from Python's values by their names: None and False are left out, True is a switch, and a list
+/// has the values of an option that may be repeated.
+cli::Values values_of(const cli::Command& command, const nb::dict& options);
 
 /// The turn of a call: HDF5 allows one thread, and signals, streams and progress belong to the process. It is taken and
 /// given back with Python's lock. Throws Failure in a thread that has it already, as a signal handler may find it, and

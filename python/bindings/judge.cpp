@@ -29,7 +29,6 @@ namespace credence::python {
 namespace {
 
 using Array = nb::ndarray<nb::ro, nb::device::cpu>;
-using Options = std::map<std::string, std::string>;
 using Lists = std::map<std::string, std::vector<std::vector<std::string>>>;
 
 /// A report and the name of its source.
@@ -59,16 +58,10 @@ RecordArray described(const std::string& path, const Array& array, double epsilo
     return described;
 }
 
-/// The program's options by their names, such as `margin`.
-cli::Parsed parsed_of(const Options& options) {
-    cli::Parsed parsed;
-    for (const auto& [name, value] : options) parsed.values[name] = {value};
-    return parsed;
-}
-
 template <class Read>
-Judgement judgement(const std::string& name, const Options& options, const Listener& listener, const Read& read) {
-    const cli::Parsed parsed = parsed_of(options);
+Judgement judgement(const std::string& name, const nb::dict& options, const Listener& listener, const Read& read) {
+    const cli::Command& command = cli::judge_command();
+    const cli::Parsed parsed = cli::parsed_of(command, {}, values_of(command, options));
     const Limits limits = cli::parse_limits(parsed);
     const int segments = cli::parse_segments(parsed);
     const auto progress = [&, due = Due()](const Progress& now) mutable {
@@ -97,14 +90,14 @@ void check(const Arrays& arrays, const Texts& texts, const Lists& lists, const D
 }
 
 Judgement judge(const Arrays& arrays, const Texts& texts, const Lists& lists, const Dimensions& dimensions,
-                const Options& options, const nb::bytes& called, const Listener& listener) {
+                const nb::dict& options, const nb::bytes& called, const Listener& listener) {
     const std::string name = bytes_of(called);
     const RecordArrays record = record_of(arrays, texts, lists, dimensions);
     return judgement(name, options, listener,
                      [&](const auto& progress, int segments) { return read_record(record, name, progress, segments); });
 }
 
-Judgement judge_file(const nb::bytes& file, const Options& options, const Listener& listener) {
+Judgement judge_file(const nb::bytes& file, const nb::dict& options, const Listener& listener) {
     const std::string path = bytes_of(file);
     try {
         return judgement(path, options, listener, [&](const auto& progress, int segments) {

@@ -58,28 +58,37 @@ public:
     Listening& operator=(const Listening&) = delete;
 };
 
-/// Runs a command line. Returns its exit code, and what it would have printed on the standard output and error stream.
-std::tuple<int, std::string, std::string> command(const std::vector<std::string>& words, const Listener& listener) {
+const cli::Command& command_of(const std::string& name) {
+    for (const cli::Command* command : cli::all_commands())
+        if (command->name == name) return *command;
+    throw InputError("unknown command " + name + ".");
+}
+
+/// Runs a command. Returns its exit code, and what it would have printed on the standard output and error stream.
+std::tuple<int, std::string, std::string> command(const std::string& name, const std::vector<std::string>& arguments,
+                                                  const nb::dict& options, const Listener& listener) {
+    const cli::Parsed parsed = cli::parsed_of(command_of(name), arguments, values_of(command_of(name), options));
     return alone([&] {
         cli::Interrupt::keep_process();
         const Captured out(std::cout), err(std::cerr);
         const Listening listening(listener);
-        cli::check_process(words);
-        const int code = cli::obey(words);
+        cli::check_process({name});
+        const int code = cli::obey(parsed);
         return std::tuple(code, out.text(), err.text());
     });
 }
 
-/// What `report` or `compare` says: it is computed when it is asked, and its formats are written later.
+/// What `report`, `judge` or `compare` says: it is computed when it is asked, and its formats are written later.
 class Said {
 public:
-    explicit Said(const std::vector<std::string>& words)
-        : rendering_(alone([&] {
-              const bool report = words.front() == "report";
-              const std::vector<std::string> arguments(words.begin() + 1, words.end());
-              const auto parsed = cli::parse(report ? cli::report_command() : cli::compare_command(), arguments);
-              return report ? cli::reported(parsed.value()) : cli::compared(parsed.value());
-          })) {}
+    Said(const std::string& name, const std::vector<std::string>& arguments, const nb::dict& options) {
+        const cli::Parsed parsed = cli::parsed_of(command_of(name), arguments, values_of(command_of(name), options));
+        rendering_ = alone([&] {
+            return name == "report" ? cli::reported(parsed)
+                   : name == "judge" ? cli::judged(parsed)
+                                     : cli::compared(parsed);
+        });
+    }
 
     std::string in(const std::string& format) const {
         return alone([&] { return shown(rendering_(format)); });
@@ -104,10 +113,12 @@ NB_MODULE(_core, module) {
     nb::set_leak_warnings(false);  // a forked process and a daemon thread leave things behind
     nb::exception<InputError>(module, "InputError", PyExc_ValueError);
     nb::exception<Failure>(module, "Failure", PyExc_RuntimeError);
-    module.def("command", command, nb::arg("words"), nb::arg("progress").none());
+    module.def("command", command, nb::arg("name"), nb::arg("arguments"), nb::arg("options"),
+               nb::arg("progress").none());
     module.def("program", run_program, nb::arg("arguments"));
     nb::class_<Said>(module, "Said")
-        .def(nb::init<const std::vector<std::string>&>(), nb::arg("words"))
+        .def(nb::init<const std::string&, const std::vector<std::string>&, const nb::dict&>(), nb::arg("name"),
+             nb::arg("arguments"), nb::arg("options"))
         .def("in_format", &Said::in, nb::arg("format"));
     bind_judge(module);
     bind_turns();

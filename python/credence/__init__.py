@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from credence._core import Failure, InputError
-    from credence._trials import Run
+    from credence._record import Record, Run
     from credence.arm import Arm
     from credence.judging import Verdict, assert_consistent, judge
     from credence.pictures import animate, plot
@@ -31,8 +31,9 @@ _modules = {
     "Failure": "_core",
     "InputError": "_core",
     "Interrupted": "program",
+    "Record": "_record",
     "Report": "program",
-    "Run": "_trials",
+    "Run": "_record",
     "Scenario": "study",
     "Simulation": "simulating",
     "Study": "study",
@@ -62,6 +63,7 @@ __all__ = [
     "Failure",
     "InputError",
     "Interrupted",
+    "Record",
     "Report",
     "Run",
     "Scenario",

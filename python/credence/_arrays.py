@@ -16,6 +16,7 @@ import numpy.typing as npt
 from credence import InputError
 from credence._calls import note
 from credence._names import printable
+from credence._record import Record
 
 Array = npt.NDArray[Any]
 
@@ -245,13 +246,12 @@ def of_many_runs(given: Mapping[str, Any]) -> dict[str, Array]:
     return arrays
 
 
-def columns(given: Mapping[str, Any]) -> dict[str, Array]:
-    """Numbers of each run [trial], by their places in a record; a single number is that of a single run."""
-    return {f"column/{name}": np.atleast_1d(numbers(f"column/{name}", each)) for name, each in given.items()}
+def prepared(record: Record, runs: object = None) -> dict[str, Array]:
+    """The arrays of a record, by their places in a file; `steps` is added if runs end at different steps.
 
-
-def prepared(given: Mapping[str, Any], runs: object = None) -> dict[str, Array]:
-    """The arrays of `judge`, by their places in a record; `steps` is added if runs end at different steps."""
+    `runs` tells the runs apart where they lie below each other.
+    """
+    given = record.arrays | ({} if record.steps is None else {"steps": record.steps})
     if runs is None:
         arrays = of_many_runs(given)
     elif "steps" in given:
@@ -263,7 +263,8 @@ def prepared(given: Mapping[str, Any], runs: object = None) -> dict[str, Array]:
         _note_one_run(given, arrays["error"])
         _note_what_looks_like_steps_first(arrays["error"])
     _refuse_unknown_times(arrays)
-    return arrays
+    columns = {f"column/{name}": each for name, each in (record.columns or {}).items()}
+    return arrays | {place: np.atleast_1d(numbers(place, each)) for place, each in columns.items()}
 
 
 def described(array: Array) -> tuple[Array, float]:

@@ -119,8 +119,8 @@ def described(variable: Any, meaning: str = "") -> Description:
     return Description(text(variable, "units"), meaning or text(variable, "long_name"))
 
 
-class Variables:
-    """A group of a file whose variables are read when they are asked for, by key or as attributes."""
+class Group:
+    """A group of a file by its name, which is read as long as the file is open."""
 
     def __init__(self, group: h5py.Group) -> None:
         self._group = group
@@ -130,6 +130,19 @@ class Variables:
     def group(self) -> h5py.Group:
         """The plain h5py group."""
         return still_open(self._group)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.group)
+
+    def __repr__(self) -> str:
+        return self._said() if self._group else f"<credence.{type(self).__name__}, closed>"
+
+    def _said(self) -> str:
+        raise NotImplementedError
+
+
+class Variables(Group):
+    """A group whose variables are read when they are asked for, by key or as attributes."""
 
     def read(self, name: str, selection: Any = ()) -> Array:
         """Reads a variable, or a part of it.
@@ -190,9 +203,6 @@ class Variables:
 
     def __contains__(self, name: object) -> bool:
         return isinstance(name, str) and name in self.group
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.group)
 
     def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self]

@@ -16,6 +16,7 @@ from typing import Any
 
 from credence import Failure, InputError
 from credence._outputs import check_output, whole
+from credence._record import Record
 
 _columns = ("error", "estimate", "truth", "sigma", "variance", "covariance", "angles")
 _of_judge = ("margin", "margin-direction", "bias", "failed", "segments", "format", "require")
@@ -179,29 +180,21 @@ def log_of(given: argparse.Namespace) -> str:
 
 def write_record(path: str, arguments: Mapping[str, Any], log: str = "") -> None:
     """Write arguments of judge as a record, which may name the log that they were read from."""
-    from credence import _arrays, _names
+    from credence import _arrays
     from credence.adapters.tables import needed
 
     h5py = needed("h5py", "h5py", "keep a record")
-    arguments = {name: value for name, value in arguments.items() if value is not None}
-    runs, groups = arguments.pop("runs", None), arguments.get("groups")
-    columns = arguments.pop("columns", {})
-    own = {what: arguments.pop(f"group_{what}", {}) for what in ("covariance", "nees")}
-    texts_of = ("groups", "row_groups", "component_names", "component_units", "manifold", "chart", "quaternion")
-    plain, lists = _names.texts_and_lists({name: arguments.pop(name) for name in texts_of if name in arguments})
-    dimensions = _names.dimensions(arguments.pop("dimension", None), groups, "nees" in arguments, own["nees"])
-    arrays = {**arguments, **{f"group/{name}/{what}": array for what in own for name, array in own[what].items()}}
+    record = Record(**{name: value for name, value in arguments.items() if name != "runs"})
+    named = record.named()
     with whole(path) as part, h5py.File(part, "w") as file:
         file.attrs["record_version"] = 2
         if log:
             file.attrs["log"] = log.encode(errors="replace").decode()
-        for name, text in plain.items():
+        for name, text in named.attributes().items():
             file.attrs[name] = text
-        for name, entries in lists.items():
-            file.attrs[name] = ", ".join(" ".join(entry) for entry in entries)
-        for name, array in (_arrays.prepared(arrays, runs) | _arrays.columns(columns)).items():
+        for name, array in _arrays.prepared(record, arguments.get("runs")).items():
             file[name] = array
-        for name, dimension in dimensions.items():
+        for name, dimension in named.dimensions.items():
             file[name].attrs["dimension"] = dimension
 
 

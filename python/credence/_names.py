@@ -5,12 +5,25 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, NamedTuple
 
 from credence._errors import InputError
 
 Entries = list[list[str]]
 _example = '{"pose": [0, 1, 2]}'
+
+
+class Named(NamedTuple):
+    """The names, groups and dimensions of a record, as its file has them."""
+
+    texts: dict[str, str]
+    lists: dict[str, Entries]
+    dimensions: dict[str, int]  # by the place of the NEES
+
+    def attributes(self) -> dict[str, str]:
+        """The texts and the lists, each as one text."""
+        lists = {name: ", ".join(map(" ".join, entries)) for name, entries in self.lists.items()}
+        return {name: text for given in (self.texts, lists) for name, text in sorted(given.items())}
 
 
 def printable(given: object) -> str:

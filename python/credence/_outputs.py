@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import os
-from collections.abc import Iterable, Iterator
+import shutil
+import weakref
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from credence._errors import InputError
@@ -54,6 +56,17 @@ def check_output(
     if not overwrite:
         raise _refused(path, "it is there already", remedy)
     return target
+
+
+def _remove(folder: str, owner: int) -> None:
+    """Remove a folder, unless this process is a fork of its owner."""
+    if os.getpid() == owner:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def goes_with(thing: object, folder: str) -> Callable[[], object]:
+    """Let a temporary folder go with an object of this process, or when the function that is returned is called."""
+    return weakref.finalize(thing, _remove, folder, os.getpid())
 
 
 @contextlib.contextmanager

@@ -10,6 +10,7 @@ import numpy as np
 
 from credence import InputError
 from credence._trials import Array
+from credence.judging import Verdict, judge
 
 OBJECTIVES = ("errors", "innovations", "nees")
 
@@ -56,19 +57,22 @@ def step_scores(objective: str, arrays: Mapping[str, Array]) -> Array:
     return np.where(count > 0, scores, np.nan)
 
 
+def judged_score(objective: str, verdict: Verdict) -> float:
+    """The score of an objective that rests on errors, as the verdict has it."""
+    found = verdict["log_score" if objective == "errors" else "nees_ratio"]["mean"]
+    return math.nan if found is None else float(found)
+
+
 def run_score(objective: str, arrays: Mapping[str, Array], texts: Mapping[str, Any]) -> float:
     """The score of a run, the mean over its steps: the log score in nats, or NEES/n; NaN where there is none.
 
     States on a manifold are judged, one run at a time, because their chart is the library's.
     """
     if objective != "innovations" and "error" not in arrays and "estimate" in arrays:
-        from credence.judging import judge
-
         record: dict[str, Any] = {name: array[None] for name, array in arrays.items() if "/" not in name}
         words = {name: text for name, text in texts["texts"].items() if name in ("manifold", "chart", "quaternion")}
         said = judge(**record, **words, segments="off", progress=False)
-        found = said["log_score" if objective == "errors" else "nees_ratio"]["mean"]
-        return math.nan if found is None else float(found)
+        return judged_score(objective, said)
     scores = step_scores(objective, arrays)
     scores = scores[~np.isnan(scores)]
     return float(scores.mean()) if scores.size else math.nan

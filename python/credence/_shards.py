@@ -5,18 +5,18 @@ from __future__ import annotations
 import contextlib
 import os
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from credence import Failure, InputError, _core
+from credence import Failure, _core
 from credence._calls import progress_bar
 from credence._workers import TRIES, Workers
 
 Scenarios = list[tuple[str, str]]  # the name and the text of each file
 
 
-def run_shard(shared: tuple[Scenarios, list[str]], shard: int, shards: int) -> bytes:
+def run_shard(shared: tuple[Scenarios, dict[str, object]], shard: int, shards: int) -> bytes:
     """Run a shard in a folder of its own, and return its results file: workers need not share a disk."""
     scenarios, options = shared
     with tempfile.TemporaryDirectory(prefix="credence-") as folder:
@@ -27,8 +27,8 @@ def run_shard(shared: tuple[Scenarios, list[str]], shard: int, shards: int) -> b
             path.write_text(text, encoding="utf-8")
             paths.append(str(path))
         part = os.path.join(folder, "part.h5")
-        words = ["run", *paths, *options, f"--shard={shard}/{shards}", f"--output={part}", "--quiet"]
-        code, _, said = _core.command(words, None)
+        of_shard = {**options, "shard": f"{shard}/{shards}", "output": part, "quiet": True}
+        code, _, said = _core.command("run", paths, of_shard, None)
         if code != 0:
             raise Failure(f"shard {shard} of {shards}: it was stopped ({said.strip()}). Run it again.")
         return Path(part).read_bytes()
@@ -36,7 +36,7 @@ def run_shard(shared: tuple[Scenarios, list[str]], shard: int, shards: int) -> b
 
 @contextlib.contextmanager
 def shards_of(
-    paths: Sequence[str], options: Sequence[str], executor: Any, shards: int | None, progress: bool | None
+    paths: Sequence[str], options: Mapping[str, object], executor: Any, shards: int | None, progress: bool | None
 ) -> Iterator[list[str]]:
     """Run all shards of a study, and yield the paths of their results files for as long as they are needed.
 
@@ -44,7 +44,7 @@ def shards_of(
     ----------
     paths : list of str
         Scenario files.
-    options : list of str
+    options : dict
         Options of ``credence run``.
     executor : int or executor
     shards : int
@@ -52,11 +52,9 @@ def shards_of(
     progress : bool
         Whether a bar counts the shards.
     """
-    if shards is not None and (isinstance(shards, bool) or not isinstance(shards, int) or shards < 1):
-        raise InputError(f"invalid shards={shards} (must be a whole number of at least 1). Give how many there are.")
-    _core.command(["show", *paths[:1]], None)  # a file that cannot be read is refused here
+    _core.command("show", paths[:1], {}, None)  # a file that cannot be read is refused here
     scenarios = [(os.path.basename(path), Path(path).read_text(encoding="utf-8")) for path in paths]
-    workers: Workers[int] = Workers(executor, run_shard, (scenarios, list(options)))
+    workers: Workers[int] = Workers(executor, run_shard, (scenarios, dict(options)))
     try:
         count = shards or workers.count
         left = list(reversed(range(count)))

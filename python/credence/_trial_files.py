@@ -22,7 +22,7 @@ import numpy as np
 
 from credence import InputError
 from credence._calls import note
-from credence._names import printable
+from credence._names import Named, printable
 from credence._outputs import whole
 from credence._trials import LARGE, MAGIC, START, Arms, Array, Failure, Frame, frame_at, frame_size, framed, metric
 
@@ -286,10 +286,8 @@ class _Record:
     def __init__(self, group: Any, layout: dict[str, Any], steps: int, trials: Array) -> None:
         self.group, self.trials = group, trials
         texts = layout["texts"]
-        for name in sorted(texts["texts"]):
-            _set_text(group.attrs, name, texts["texts"][name])
-        for name in sorted(texts["lists"]):
-            _set_text(group.attrs, name, ", ".join(" ".join(entry) for entry in texts["lists"][name]))
+        for name, text in Named(**texts).attributes().items():
+            _set_text(group.attrs, name, text)
         self._dimensions = texts["dimensions"]
         self._forms = [
             (name, np.dtype(dtype), ((steps, *shape[1:]) if shape else ()), steps if name == "steps" else np.nan)

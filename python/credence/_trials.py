@@ -18,7 +18,7 @@ import threading
 import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,7 +26,8 @@ import numpy.typing as npt
 
 from credence import InputError, _arrays, _core
 from credence._calls import said_of_arrays
-from credence._names import dimensions, printable, texts_and_lists
+from credence._names import Named, printable
+from credence._record import Run
 
 Array = npt.NDArray[Any]
 Arms = dict[str, dict[str, Any]]
@@ -36,107 +37,6 @@ BATCH = 256  # trials that a function of many generators gets at once
 MAGIC = b"crtrial1"
 _SUM = 16  # bytes of a frame's checksum
 START = len(MAGIC) + 16  # bytes of a frame before its parts: its mark, and two lengths
-
-
-class Run:
-    """One run of a filter, as `simulate` takes it from the function that makes it.
-
-    Every form of `judge` has its argument, without the dimension of trials: K steps, n components, m innovations. With
-    ``batch=True`` all arrays, `steps` and `columns` have a leading dimension, that of the generators that were given.
-
-    Parameters
-    ----------
-    error : array [step, n]
-        Estimate - truth, in the chart of the covariance; NaN where a component is not in the state.
-    covariance : array [step, n, n] or [step, n]
-        Joint covariances, or variances alone, in the square of the units of `error`.
-    innovation, innovation_covariance : arrays [step, m] and [step, m, m]
-        Both or neither; NaN in rows that were not observed.
-    truth, estimate : arrays [step, q]
-        In place of `error`: states on a `manifold`.
-    nees : array [step]
-        The NEES of the whole state and nothing else, with its `dimension`.
-    group_covariance, group_nees : dict of arrays [step, d, d] and [step]
-        Covariances, or the NEES, of groups by their names.
-    time : array [step]
-        Times of the steps (s).
-    steps : int
-        How many steps the run has, where runs differ for a reason of their own. A run that has another number of steps
-        than the first one and does not say so has failed.
-    groups, row_groups, component_names, component_units, dimension, manifold, chart, quaternion
-        As of `judge`, the same in every run.
-    columns : dict of float
-        Further numbers of the trial, such as ``{"rmse": 0.2}``.
-    """
-
-    __slots__ = ("arrays", "columns", "steps", "texts")
-
-    def __init__(
-        self,
-        error: object = None,
-        covariance: object = None,
-        *,
-        innovation: object = None,
-        innovation_covariance: object = None,
-        groups: object = None,
-        row_groups: object = None,
-        component_names: object = None,
-        component_units: object = None,
-        steps: object = None,
-        time: object = None,
-        truth: object = None,
-        estimate: object = None,
-        manifold: str | None = None,
-        chart: str | None = None,
-        quaternion: str | None = None,
-        group_covariance: Mapping[str, object] | None = None,
-        nees: object = None,
-        group_nees: Mapping[str, object] | None = None,
-        dimension: object = None,
-        columns: Mapping[str, object] | None = None,
-    ) -> None:
-        arrays = {
-            "error": error,
-            "covariance": covariance,
-            "innovation": innovation,
-            "innovation_covariance": innovation_covariance,
-            "truth": truth,
-            "estimate": estimate,
-            "nees": nees,
-            "time": time,
-        }
-        self.arrays = {name: array for name, array in arrays.items() if array is not None}
-        for what, groups_own in (("covariance", group_covariance), ("nees", group_nees)):
-            for name, array in (groups_own or {}).items():
-                self.arrays[f"group/{name}/{what}"] = array
-        texts = {
-            "groups": groups,
-            "row_groups": row_groups,
-            "component_names": component_names,
-            "component_units": component_units,
-            "manifold": manifold,
-            "chart": chart,
-            "quaternion": quaternion,
-            "dimension": dimension,
-        }
-        self.texts = {name: text for name, text in texts.items() if text is not None}
-        self.steps = steps
-        self.columns = dict(columns or {})
-
-    @classmethod
-    def of_record(cls, arguments: Mapping[str, Any]) -> Run:
-        """The only run of a record: of arguments of `judge` with one trial, as `credence.adapters` makes them."""
-
-        def one(name: str, value: Any) -> Any:
-            if isinstance(value, Mapping) and name in ("group_covariance", "group_nees"):
-                return {group: one("", array) for group, array in value.items()}
-            if not isinstance(value, np.ndarray) or (name == "time" and value.ndim == 1):
-                return value
-            if len(value) != 1:
-                raise InputError(f"{name}: has {len(value)} trials. Give one, as a Run is one.")
-            return value[0]
-
-        return cls(**{name: one(name, value) for name, value in arguments.items() if name != "steps"})
 
 
 def seed_sequence(seed: int, trial: int) -> np.random.SeedSequence:
@@ -253,25 +153,20 @@ def _shape(array: Array) -> str:
     return str(list(array.shape))
 
 
-@dataclass
-class _Texts:
-    """Names and groups as a record has them; they are the same in most runs, and worked out once."""
+class KnownNames:
+    """Names, groups and dimensions of runs; they are the same in most, and worked out once."""
 
-    given: dict[str, Any] = field(default_factory=dict)
-    groups: tuple[str, ...] = ()
-    taken: dict[str, Any] = field(default_factory=lambda: {"texts": {}, "lists": {}, "dimensions": {}})
+    def __init__(self) -> None:
+        self._given: Any = None
+        self._taken = Named({}, {}, {})
 
     def of(self, run: Run) -> dict[str, Any]:
-        own = tuple(path.split("/")[1] for path in run.arrays if path.startswith("group/") and path.endswith("/nees"))
+        given = run.texts, run.nees is None, [*(run.group_nees or ())]
         with contextlib.suppress(ValueError):  # of arrays, which have no single answer
-            if run.texts == self.given and own == self.groups:
-                return self.taken
-        named = {name: text for name, text in run.texts.items() if name != "dimension"}
-        plain, lists = texts_and_lists(named)
-        sizes = dimensions(run.texts.get("dimension"), run.texts.get("groups"), "nees" in run.arrays, own)
-        self.given, self.groups = dict(run.texts), own
-        self.taken = {"texts": plain, "lists": lists, "dimensions": sizes}
-        return self.taken
+            if given == self._given:
+                return self._taken._asdict()
+        self._given, self._taken = given, run.named()
+        return self._taken._asdict()
 
 
 class Taken(NamedTuple):
@@ -304,19 +199,19 @@ def _checked_steps(arrays: Mapping[str, Array], behind: int) -> int:
     return int(steps)
 
 
-def take(result: object, known: _Texts, batch: int = 0) -> Taken:
+def take(result: object, known: KnownNames, batch: int = 0) -> Taken:
     """The arrays of what the function returned; InputError or TypeError where it cannot be used."""
     if not isinstance(result, Run):
         raise TypeError(f"the function returned {type(result).__name__}, not a credence.Run")
-    behind = 1 if batch else 0
-    columns = {f"column/{name}": value for name, value in result.columns.items()}
-    given = {**result.arrays, **columns, **({} if result.steps is None else {"steps": result.steps})}
+    behind, of_steps = 1 if batch else 0, result.arrays
+    columns = {f"column/{name}": value for name, value in (result.columns or {}).items()}
+    given = {**of_steps, **columns, **({} if result.steps is None else {"steps": result.steps})}
     if batch:
         arrays = _arrays.of_many_runs(given)
     else:
         arrays = {name: _arrays.of_one_run(name, array) for name, array in given.items()}
     arrays = {name: _kept(array, name in columns or name == "steps") for name, array in arrays.items()}
-    of_steps = {name: array for name, array in arrays.items() if name in result.arrays}
+    of_steps = {name: array for name, array in arrays.items() if name in of_steps}
     judged = {"error", "estimate", "nees", "innovation"}
     if not of_steps.keys() & judged and not any(name.startswith("group/") for name in of_steps):
         raise InputError("a Run has neither error, nor truth and estimate, nor nees, nor innovation. Give one of them.")
@@ -439,7 +334,7 @@ class Chunk:
 
 def collected(work: Work, numbers: Sequence[int], keep: Sequence[int]) -> Chunk:
     """Run trials under every arm. With batches `numbers` is one whole batch, of which those in `keep` are kept."""
-    chunk, texts = Chunk(), {arm: _Texts() for arm in work.arms}
+    chunk, texts = Chunk(), {arm: KnownNames() for arm in work.arms}
     for group in [numbers] if work.batch else [[number] for number in numbers]:
         for arm, options in work.arms.items():
             generators = [generator(work.seed, number) for number in group]

@@ -5,7 +5,6 @@ Each source gives one score a trial as a function of the parameters, always on t
 
 from __future__ import annotations
 
-import configparser
 import json
 import os
 import subprocess
@@ -20,10 +19,11 @@ import numpy as np
 
 from credence import Failure, InputError
 from credence._names import printable
-from credence._scores import run_score, step_scores
-from credence._trials import Array, Run, Work, _Texts, collected, take
+from credence._record import Run
+from credence._scores import judged_score, run_score, step_scores
+from credence._trials import Array, KnownNames, Work, collected, take
 from credence._workers import Workers
-from credence.judging import Verdict, _Printed, judge
+from credence.judging import Texts, Verdict, judge
 
 Values = Mapping[str, float]
 CHUNK_SECONDS = 0.1
@@ -46,12 +46,6 @@ class Source(Protocol):
 
     def close(self) -> None:
         """End what was started; scores start it again."""
-
-
-def judged_score(objective: str, verdict: Verdict) -> float:
-    """The score of an objective that rests on errors, as the verdict has it."""
-    found = verdict["log_score" if objective == "errors" else "nees_ratio"]["mean"]
-    return float("nan") if found is None else float(found)
 
 
 def score_chunk(shared: tuple[Work, str], values: Values, numbers: list[int]) -> tuple[float, dict[int, float], str]:
@@ -153,20 +147,18 @@ class ScenarioSource:
 
     def shown(self, values: Values) -> dict[str, str]:
         """{key: its text} of the scenario as resolved; InputError where a value is refused."""
+        from credence.arm import settings_in
         from credence.program import show
 
         text = show(self.scenario, set=values) if self.own_program is None else self._own("show", [], values)
-        parser = configparser.ConfigParser(interpolation=None, delimiters=("=",), comment_prefixes=("#",))
-        parser.optionxform = str  # type: ignore[assignment,method-assign]
-        parser.read_string(text)
-        return {f"{section}.{key}": value for section in parser.sections() for key, value in parser.items(section)}
+        return settings_in(text)
 
     def _own(self, command: str, words: list[str], values: Values) -> str:
-        from credence.program import _scenario_files, _setting_words
+        from credence.program import scenario_files, settings_of
 
         assert self.own_program is not None
-        with _scenario_files(self.scenario) as paths:
-            told = [self.own_program, command, *paths, *words, *_setting_words(values, None)]
+        with scenario_files(self.scenario) as paths:
+            told = [self.own_program, command, *paths, *words, *(f"--set={one}" for one in settings_of(values)["set"])]
             try:
                 done = subprocess.run(told, capture_output=True, text=True, check=False)
             except OSError as error:
@@ -214,7 +206,7 @@ class ScenarioSource:
         study = self._study(values, count, held_out_seed(self.seed), self.progress)
         said = report(study)
         entry = [one for one in said.json if one["arm"] == self.arm]
-        verdict = Verdict(_Printed(str(said), json.dumps(entry), said.html))
+        verdict = Verdict(Texts(str(said), json.dumps(entry), said.html))
         return verdict, judged_score(self.objective, verdict)
 
     def close(self) -> None:
@@ -255,7 +247,7 @@ class LogSource:
             raise Failure(f"{said}. Mend it, or give another start.") from error
         if not isinstance(run, Run):
             raise InputError(f"the function returned {type(run).__name__}, not a credence.Run. Return one.")
-        return take(run, _Texts()).arrays, run.texts
+        return take(run, KnownNames()).arrays, run.texts
 
     def _judged(self, arrays: Mapping[str, Array], texts: Mapping[str, Any], steps: slice) -> Verdict:
         """The verdict on steps of the log; on its innovations, as if they were errors, where it has no errors."""

@@ -242,11 +242,6 @@ class Workers(Generic[Payload]):
     ) -> None:
         self.function, self.shared, self.is_whole = function, shared, is_whole
         is_number = isinstance(executor, int) and not isinstance(executor, bool)
-        if is_number and executor < 1:
-            raise InputError(f"invalid executor={executor} (must be at least 1 process). Give their number.")
-        if executor is not None and not is_number and not callable(getattr(executor, "submit", None)):
-            what = f"invalid executor of {type(executor).__name__} (it has no submit)"
-            raise InputError(f"{what}. Give a number of processes, or an executor of concurrent.futures.")
         self.executor: Any = _Here() if executor is None else executor
         self.count = 1 if executor is None else executor if is_number else _workers_of(executor)
         self.window = 1 if executor is None else self.count if is_number else 2 * self.count + 1  # tasks at once

@@ -1,20 +1,19 @@
-"""One arm of a results file: its columns and series as numpy arrays, and their means."""
+"""Scenarios of a results file, and their arms: columns and series as numpy arrays, and their means."""
 
 from __future__ import annotations
 
+import configparser
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import means
-from ._file import Array, Description, FloatArray, Variables, described, text
+from ._file import Array, Description, FloatArray, Group, Variables, described, text
 from .means import Means
 
 if TYPE_CHECKING:
     import xarray
-
-    from .study import Scenario
 
 
 class Arm(Variables):
@@ -27,8 +26,6 @@ class Arm(Variables):
     @property
     def scenario(self) -> Scenario:
         """The scenario that it is an arm of."""
-        from .study import Scenario
-
         return Scenario(self.group.parent)
 
     @property
@@ -161,9 +158,26 @@ class Arm(Variables):
     def to_xarray(self) -> xarray.Dataset:
         """The arm as an xarray.Dataset: columns [trial], series [step] with SERIES_standard_error, the detailed
         variables, each with its unit. Needs xarray; reads all of these."""
-        from .grid import arm_to_xarray
+        import xarray
 
-        return arm_to_xarray(self)
+        kept = {name: dimensions for name, dimensions in self.dimensions.items()
+                if dimensions[0] in ("trial", "detailed_trial")}
+        variables: dict[str, Any] = {name: (dimensions, self[name], self._attributes(name))
+                                     for name, dimensions in kept.items()}
+        for name in self.series:
+            means, attributes = self.per_step(name), self._attributes(name)
+            variables[name] = ("step", means.mean, attributes)
+            variables[f"{name}_standard_error"] = ("step", means.standard_error, attributes)
+        used = {"step"}.union(*kept.values())
+        coordinates = {name: self[name] for name in sorted(used - {"component"})}
+        if "component" in used:
+            coordinates["component"] = np.array(self.words("component", "component_names"))
+        counts = {"counted_trials": self.counted_trials, "failed_trials": self.failed_trials}
+        return xarray.Dataset(variables, coordinates, counts)
+
+    def _attributes(self, name: str) -> dict[str, str]:
+        described = self.describe(name)
+        return {"units": described.units, "long_name": described.meaning}
 
     def _counts(self, series: str) -> Any:
         """Over how many trials a series runs: [step] of a record, whose runs may lack steps."""
@@ -199,8 +213,57 @@ class Arm(Variables):
         yield from self.series
         yield from self.group
 
-    def __repr__(self) -> str:
-        if not self._group:
-            return "<credence.Arm, closed>"
+    def _said(self) -> str:
         kept = "" if self.keeps_trials else ", aggregates"
         return f"<credence.Arm {self.group.name[1:]}: {self.trials:,} trials, {self.failed_trials:,} failed{kept}>"
+
+
+def settings_in(scenario: str) -> dict[str, str]:
+    """{key: its text} of a scenario."""
+    parser = configparser.ConfigParser(interpolation=None, delimiters=("=",), comment_prefixes=("#",))
+    parser.optionxform = str  # type: ignore[assignment,method-assign]
+    parser.read_string(scenario)
+    return {f"{section}.{key}": value for section in parser.sections() for key, value in parser.items(section)}
+
+
+class Scenario(Group):
+    """A scenario of a study: its arms by name, in the study's order."""
+
+    @property
+    def arms(self) -> dict[str, Arm]:
+        return {name: Arm(group) for name, group in self.group.items()}
+
+    @property
+    def text(self) -> str:
+        """The scenario as resolved: an INI text that ``credence.run`` reads."""
+        return text(self.group, "scenario")
+
+    def setting(self, name: str) -> str:
+        """A key such as ``noise.heading``, as text; empty where the world has none of that name."""
+        return settings_in(self.text).get(name, "")
+
+    def published(self, column: str) -> dict[str, float]:
+        """{arm: value of the column in the published single run}, where the scenario names one."""
+        pairs = [pair.split() for pair in self.setting(f"published.{column}").split(",") if pair.strip()]
+        return {pair[0]: float(pair[1]) for pair in pairs if len(pair) == 2}
+
+    @property
+    def sweep(self) -> tuple[str, dict[str, float | str]] | None:
+        """(scenario that was swept, {key: value here}) of a point of a grid; None of another scenario."""
+        if "sweep_of" not in self.group.attrs:
+            return None
+        values = {key: self.group.attrs[f"sweep.{key}"] for key in text(self.group, "sweep_keys").split()}
+        return text(self.group, "sweep_of"), {
+            key: text(self.group, f"sweep.{key}") if isinstance(value, bytes | str) else float(value)
+            for key, value in values.items()}
+
+    def __getitem__(self, arm: str) -> Arm:
+        if arm not in self.group:
+            raise KeyError(f"{self.name} has no arm {arm}. It has {', '.join(self.group)}")
+        return Arm(self.group[arm])
+
+    def __len__(self) -> int:
+        return len(self.group)
+
+    def _said(self) -> str:
+        return "\n".join([f"<credence.Scenario {self.name}>", *(f"  {arm!r}" for arm in self.arms.values())])

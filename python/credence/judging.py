@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
 import json
 import os
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+import re
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from typing import Any, NamedTuple, ParamSpec
 
 from credence import InputError, _core
 from credence import _doors as doors
 from credence._calls import errors_of_arguments, framed, progress_bar, said_of_arrays
+from credence._record import Record
 
-if TYPE_CHECKING:
-    Groups = str | Mapping[str, int | Sequence[int]] | Sequence[str]
-
+Given = ParamSpec("Given")
 
 NOT_REFUTED = ("consistent", "undecided")
 REFUTED = ("optimistic", "pessimistic", "mixed")
@@ -24,7 +27,7 @@ def tune_hint(run: str = "run", free: str = "{...}", start: str = "") -> str:
     return f"hint: what to change in it: credence.tune({run}, free={free}{', start={' + start + '}' if start else ''})"
 
 
-class _Printed(NamedTuple):
+class Texts(NamedTuple):
     """What a judgement says, without what it was computed from."""
 
     text: str
@@ -47,13 +50,13 @@ class Verdict:
         What ``credence judge --format json`` prints, the same bits; it has one entry, that of the record.
     """
 
-    def __init__(self, judgement: _core.Judgement | _Printed) -> None:
+    def __init__(self, judgement: _core.Judgement | Texts) -> None:
         self._judgement = judgement
         self.json: list[dict[str, Any]] = json.loads(judgement.json)
         self.verdict: str = self["verdict"]
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Verdict, (_Printed(self._judgement.text, self._judgement.json, self._judgement.html),)
+        return Verdict, (Texts(self._judgement.text, self._judgement.json, self._judgement.html),)
 
     def __getitem__(self, name: str) -> Any:
         return self.json[0][name]
@@ -78,9 +81,9 @@ class Verdict:
         return self.verdict == "consistent"
 
     @property
-    def findings(self) -> list[dict[str, Any]]:
-        """What speaks against the filter, each with what it is ``about``, ``where``, ``value`` and ``interval``."""
-        return list(self["findings"])
+    def findings(self) -> list[Finding]:
+        """What speaks against the filter."""
+        return [Finding(**one) for one in self["findings"]]
 
     @property
     def reached(self) -> dict[str, float | None]:
@@ -96,12 +99,33 @@ class Verdict:
         return dict(self["log_score"])
 
 
-def _refuse_what_is_not_used(given: Mapping[str, object]) -> None:
-    """Refuse what says nothing without another argument, so that it is not ignored."""
-    for names, other in ((("row_groups",), "innovation"), (("manifold", "chart", "quaternion"), "estimate")):
-        for name in names:
-            if name in given and other not in given:
-                raise InputError(f"{name}: says nothing without {other}. Give both, or leave it out.")
+@dataclass(frozen=True)
+class Finding:
+    """What speaks against a filter.
+
+    Attributes
+    ----------
+    what, about : str
+        ``optimistic``, ``pessimistic`` or what else is wrong, and of what: ``size``, ``bias``, ``calibration``, ...
+    where, when : str
+        Of which group or component, and when; empty where it is all of them.
+    measure : str
+        What `value` is.
+    value : float
+    interval : list of float
+        Both ends of that of `value`.
+    text : str
+        The sentence of the report.
+    """
+
+    what: str
+    about: str
+    where: str
+    when: str
+    measure: str
+    value: float
+    interval: list[float]
+    text: str
 
 
 def _judged(name: str, value: Any) -> Any:
@@ -119,6 +143,37 @@ def _judged(name: str, value: Any) -> Any:
     return doors.path(name, value) if isinstance(value, (str, os.PathLike)) else value
 
 
+@dataclass(eq=False, repr=False, slots=True, kw_only=True)
+class _Asked(Record):
+    """The arguments of `judge`: a record, and what is asked of it."""
+
+    runs: object = None
+    margin: float | str = 0.05
+    margin_direction: float | str | None = None
+    bias: float = 0.1
+    failed: float | str = 0.01
+    segments: int | str = "auto"
+    name: str = "record"
+    progress: bool | None = None
+
+
+def _takes(made: Callable[Given, _Asked]) -> Callable[[Callable[[_Asked], Verdict]], Callable[Given, Verdict]]:
+    """Make the fields of a dataclass the arguments of a function, with their names, types and documentation."""
+
+    def taking(function: Callable[[_Asked], Verdict]) -> Callable[Given, Verdict]:
+        @functools.wraps(function)
+        def entered(*arguments: Given.args, **named: Given.kwargs) -> Verdict:
+            return function(made(*arguments, **named))
+
+        entered.__signature__ = inspect.signature(made).replace(return_annotation="Verdict")  # type: ignore[attr-defined]
+        made.__init__.__qualname__ = function.__name__  # as Python's own errors say it
+        shown = (Record.__doc__ or "").partition("----------\n")[2].rstrip()
+        entered.__doc__ = re.sub(r"    RECORD\n(?s:.+?)\n(?=    runs)", lambda _: f"{shown}\n", function.__doc__ or "")
+        return entered
+
+    return taking
+
+
 @doors.door(
     error=_judged, covariance=_judged, group_covariance=doors.mapping('{"pose": P}'), name=doors.title,
     group_nees=doors.mapping('{"pose": nees}'), columns=doors.mapping('{"rmse": rmse}'), progress=doors.flag,
@@ -127,57 +182,20 @@ def _judged(name: str, value: Any) -> Any:
         doors.plain,
     ),
 )  # fmt: skip
-def judge(
-    error: object = None,
-    covariance: object = None,
-    *,
-    innovation: object = None,
-    innovation_covariance: object = None,
-    groups: Groups | None = None,
-    row_groups: Groups | None = None,
-    margin: float | str = 0.05,
-    margin_direction: float | str | None = None,
-    bias: float = 0.1,
-    failed: float | str = 0.01,
-    segments: int | str = "auto",
-    component_names: str | Sequence[str] | None = None,
-    component_units: str | Sequence[str] | None = None,
-    steps: object = None,
-    time: object = None,
-    runs: object = None,
-    truth: object = None,
-    estimate: object = None,
-    manifold: str | None = None,
-    chart: str | None = None,
-    quaternion: str | None = None,
-    group_covariance: Mapping[str, object] | None = None,
-    nees: object = None,
-    group_nees: Mapping[str, object] | None = None,
-    dimension: int | Mapping[str, int] | None = None,
-    columns: Mapping[str, object] | None = None,
-    name: str = "record",
-    progress: bool | None = None,
-) -> Verdict:
+@_takes(_Asked)
+def judge(asked: _Asked) -> Verdict:
     """Say whether a filter's covariance can be believed, by its errors in many independent runs.
 
-    `error` and `covariance` are enough for most filters; the other forms are those of a record [docs/judge.md]. Arrays
-    are anything that NumPy takes (xarray, pandas, lists); docs/theory/python.md says what becomes of masks, units and
-    dimensions. Doubles and singles of any strides are read in place, a part at a time; other types are converted first.
-    A single run may leave out the first dimension, and a list may hold runs of different lengths.
+    Takes the fields of a `Record` as arguments, of which `error` and `covariance` are enough for most filters; or, in
+    place of `error`, a Record or the path of one in a file [docs/judge.md], and then none of the other fields.
 
     Parameters
     ----------
-    error : array [trial, step, n], or path
-        Estimate - truth, in the chart of the covariance; NaN where a component is not in the state. Or the path of a
-        record in a file, and then none of the other arrays.
-    covariance : array [trial, step, n, n] or [trial, step, n]
-        Joint covariances, or variances alone, in the square of the units of `error`.
-    innovation, innovation_covariance : arrays [trial, step, m] and [trial, step, m, m]
-        Both or neither; NaN in rows that were not observed.
-    groups : dict, str or list of str
-        Parts of the state that are judged by themselves: ``{"pose": [0, 1, 2]}`` or ``"pose 0:3"``.
-    row_groups : dict, str or list of str
-        The same of the rows of the innovation.
+    RECORD
+        The fields of `Record`.
+    runs : array [row], or name of a column
+        Which run each row is of, where runs lie below each other in flat tables: all arrays are then [row, ...], each
+        run's steps in their order. A name is that of a column of the tables, or of a level of their index.
     margin, margin_direction : float or str
         NEES/n within 1 -+ `margin` is consistent, ``0.05`` or ``"5%"``; so is the squared error of every combination of
         the components, over what the covariance says, within 1 -+ `margin_direction` (twice the margin).
@@ -188,26 +206,6 @@ def judge(
     segments : int or str
         Fewer than 20 runs are counted by segments, which take the place of runs: ``"auto"`` makes them ten times as
         long as errors take to decorrelate [docs/statistics.md, One log], a number says their steps, ``"off"``: none.
-    component_names, component_units : list of str
-        One for each component.
-    steps : array [trial]
-        How many steps each run has, where they differ.
-    time : array [step] or [trial, step]
-        Times of the steps (s), which must increase.
-    runs : array [row], or name of a column
-        Which run each row is of, where runs lie below each other in flat tables: all arrays are then [row, ...], each
-        run's steps in their order. A name is that of a column of the tables, or of a level of their index.
-    truth, estimate : arrays [trial, step, q]
-        In place of `error`: states on a `manifold`, such as ``"SE3 x R6"``, whose error is taken in the `chart`
-        ``"local"`` or ``"global"``; `quaternion` is ``"wxyz"`` or ``"xyzw"``.
-    group_covariance : dict of arrays [trial, step, d, d]
-        Covariances of groups, by their names.
-    nees, group_nees : array [trial, step], dict of such arrays
-        The NEES of the whole state, or of groups, and nothing else.
-    dimension : int, or dict of int
-        The dimension of `nees`; or of the group of each name, ``"all"`` for the whole state.
-    columns : dict of arrays [trial]
-        Further numbers of each run, such as ``{"rmse": rmse}``, which are reported beside those of every record.
     name : str
         What the report calls the record.
     progress : bool
@@ -222,52 +220,24 @@ def judge(
     InputError
         A ValueError: arrays do not fit each other, a covariance is not symmetric, an option is out of its range.
     """
-    options = {
-        "margin": margin,
-        "bias": bias,
-        "failed": failed,
-        "margin-direction": margin_direction,
-        "segments": segments,
-    }
-    given_options = {key: str(value) for key, value in options.items() if value is not None}
-    own = {"covariance": group_covariance or {}, "nees": group_nees or {}}
-    arrays = {
-        "error": error,
-        "covariance": covariance,
-        "innovation": innovation,
-        "innovation_covariance": innovation_covariance,
-        "steps": steps,
-        "time": time,
-        "truth": truth,
-        "estimate": estimate,
-        "nees": nees,
-        **{f"group/{group}/{what}": array for what, each in own.items() for group, array in each.items()},
-    }
-    texts = {
-        "groups": groups,
-        "row_groups": row_groups,
-        "component_names": component_names,
-        "component_units": component_units,
-        "manifold": manifold,
-        "chart": chart,
-        "quaternion": quaternion,
-    }
-    given_arrays = {path: array for path, array in arrays.items() if array is not None}
-    given_texts = {key: text for key, text in texts.items() if text is not None}
-    if isinstance(error, (str, os.PathLike)):
-        if len(given_arrays) > 1 or given_texts or columns or runs is not None:
-            raise TypeError("a record in a file has its own arrays, groups and names. Give the path alone.")
-        with errors_of_arguments(), progress_bar(progress) as bar:
-            return Verdict(_core.judge_file(os.fsencode(error), given_options, bar))
-    from credence import _arrays, _names
+    options = {name: getattr(asked, name) for name in ("margin", "margin_direction", "bias", "failed", "segments")}
+    data = asked.given().keys() & {"runs", *(field.name for field in fields(Record))}
+    if isinstance(asked.error, (str, os.PathLike, Record)) and data != {"error"}:
+        raise TypeError("a Record, or one in a file, has its own arrays, groups and names. Give it alone.")
+    if isinstance(asked.error, (str, os.PathLike)):
+        with errors_of_arguments(), progress_bar(asked.progress) as bar:
+            return Verdict(_core.judge_file(os.fsencode(asked.error), options, bar))
+    from credence import _arrays
 
-    _refuse_what_is_not_used({**given_arrays, **given_texts})
-    plain, lists = _names.texts_and_lists(given_texts)
-    dimensions = _names.dimensions(dimension, groups, nees is not None, own["nees"])
-    arrays_and_columns = _arrays.prepared(given_arrays, runs) | _arrays.columns(columns or {})
-    taken = {path: _arrays.described(array) for path, array in arrays_and_columns.items()}
-    with errors_of_arguments(said_of_arrays), progress_bar(progress) as bar:
-        return Verdict(_core.judge(taken, plain, lists, dimensions, given_options, os.fsencode(name), bar))
+    record = asked.error if isinstance(asked.error, Record) else asked
+    for names, other in ((("row_groups",), "innovation"), (("manifold", "chart", "quaternion"), "estimate")):
+        for name in names:
+            if getattr(record, name) is not None and getattr(record, other) is None:
+                raise InputError(f"{name}: says nothing without {other}. Give both, or leave it out.")
+    named = record.named()
+    taken = {place: _arrays.described(array) for place, array in _arrays.prepared(record, asked.runs).items()}
+    with errors_of_arguments(said_of_arrays), progress_bar(asked.progress) as bar:
+        return Verdict(_core.judge(taken, *named, options, os.fsencode(asked.name), bar))
 
 
 @doors.door(strict=doors.flag)

@@ -16,9 +16,10 @@ from credence import _core
 from credence import _doors as doors
 from credence._calls import errors_of_arguments, framed, note, progress_bar, said
 from credence._names import not_utf8, printable
+from credence._outputs import goes_with
+from credence._results import Results, Sources
 
 if TYPE_CHECKING:
-    from credence.simulating import SimulatedArm, Simulation
     from credence.study import Study
     from credence.trajectory import Trajectory
 
@@ -50,17 +51,21 @@ class Interrupted(KeyboardInterrupt):
         self.study = study
 
 
-def _command(words: Sequence[str], progress: bool | None = False) -> tuple[int, str, str]:
+def _command(
+    name: str, arguments: Sequence[str], options: Mapping[str, object], progress: bool | None = False
+) -> tuple[int, str, str]:
     """Run a command of the program; return its exit code and what it said on both streams."""
-    _refuse_what_is_not_utf8(words)
+    _refuse_what_is_not_utf8(arguments, options)
     with errors_of_arguments(), progress_bar(progress) as bar:
-        return _core.command(words, bar)
+        return _core.command(name, arguments, options, bar)
 
 
-def _refuse_what_is_not_utf8(words: Sequence[str]) -> None:
-    for word in words:
-        if not_utf8(word):
-            raise _core.InputError(f"invalid {said(printable(word))} (it is not UTF-8). Give another name.")
+def _refuse_what_is_not_utf8(arguments: Sequence[str], options: Mapping[str, object]) -> None:
+    for name, given in [*(("", one) for one in arguments), *options.items()]:
+        for value in given if isinstance(given, list) else [given]:
+            if isinstance(value, str) and not_utf8(value):
+                word = printable(f"--{name}={value}" if name else value)
+                raise _core.InputError(f"invalid {said(word)} (it is not UTF-8). Give another name.")
 
 
 def _value_text(value: object) -> str:
@@ -81,32 +86,20 @@ def _axis_text(values: str | Iterable[object]) -> str:
     return "|".join([*texts, ""]) if any("," in text for text in texts) else ",".join(texts)
 
 
-def _option_words(**options: object) -> list[str]:
-    """Options with their values, without those that are None; True is a switch."""
-    words = []
-    for name, value in options.items():
-        option = "--" + name.replace("_", "-")
-        if value is True:
-            words.append(option)
-        elif value is not None and value is not False:
-            words.append(f"{option}={value}")
-    return words
+def settings_of(settings: Settings | None, sweep: Sweep | None = None) -> dict[str, list[str]]:
+    """The options that change keys of scenarios."""
+    return {"set": [f"{key}={_value_text(value)}" for key, value in (settings or {}).items()],
+            "sweep": [f"{key}={_axis_text(values)}" for key, values in (sweep or {}).items()]}  # fmt: skip
 
 
-def _setting_words(settings: Settings | None, sweep: Sweep | None) -> list[str]:
-    words = [f"--set={key}={_value_text(value)}" for key, value in (settings or {}).items()]
-    return words + [f"--sweep={key}={_axis_text(values)}" for key, values in (sweep or {}).items()]
-
-
-def _goal_words(until: Goals | None) -> list[str]:
-    if until is None or isinstance(until, str):
-        return _option_words(until=until)
-    goals = [f"{metric}={width}" for metric, width in until.items()] if isinstance(until, Mapping) else until
-    return [f"--until={goal}" for goal in goals]
+def _goals(until: Goals | None) -> list[str]:
+    if isinstance(until, Mapping):
+        return [f"{metric}={width}" for metric, width in until.items()]
+    return [until] if isinstance(until, str) else list(until or [])
 
 
 @contextlib.contextmanager
-def _scenario_files(given: File | Sequence[File] | None) -> Iterator[list[str]]:
+def scenario_files(given: File | Sequence[File] | None) -> Iterator[list[str]]:
     """Paths of scenarios; a text that has lines is written into a file for as long as it is needed."""
     if given is None:
         yield []
@@ -121,39 +114,28 @@ def _scenario_files(given: File | Sequence[File] | None) -> Iterator[list[str]]:
         yield [os.fspath(given)]
 
 
-def _path_of(study: Study | File) -> str:
+def _path_of(study: Results | File) -> str:
     """The path of a results file. That of a study still leads to the file that it has open."""
-    if isinstance(study, (str, os.PathLike)):
+    if not isinstance(study, Results):
         return os.fspath(study)
-    from credence._file import Identity
-
-    if study.records:
+    sources = study.sources()
+    if sources.records:
         raise _core.InputError(
             "cannot use records here (`run` did not make them, so no trial can be run again). Call simulate again, "
             "with resume=True."
         )
-    if study.identity is None:
-        raise _core.InputError("cannot use a study in memory here (it has no path). Give the path of its file.")
-    if Identity.of(study.path) != study.identity:
-        raise _core.InputError(
-            f"cannot use {study.path} (it was changed, replaced or removed since the study was opened). Open it again."
-        )
-    return study.path
+    return sources.study
 
 
-def _remove(folder: str, owner: int) -> None:
-    """Remove a temporary folder, unless this process is a fork of its owner."""
-    if os.getpid() == owner:
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-def _finish(words: list[str], output: str, progress: bool | None, folder: str | None = None) -> Study:
+def _finish(
+    name: str, arguments: Sequence[str], options: Mapping[str, object], output: str, progress: bool | None,
+    folder: str | None = None,
+) -> Study:  # fmt: skip
     """Run a command that writes a results file, and open it. With the study goes the folder that was made for it."""
     from credence.study import open as open_study
 
-    words += [f"--output={output}", "--quiet"]
     try:
-        code, _, err = _command(words, progress)
+        code, _, err = _command(name, arguments, {**options, "output": output, "quiet": True}, progress)
         study = open_study(output)
     except BaseException as error:
         has_work = isinstance(error, _core.Failure) and folder is not None and os.listdir(folder)
@@ -161,7 +143,7 @@ def _finish(words: list[str], output: str, progress: bool | None, folder: str | 
             shutil.rmtree(folder)
         raise
     if folder is not None:
-        weakref.finalize(study, _remove, folder, os.getpid())
+        goes_with(study, folder)
     if code == STOPPED:
         raise Interrupted(said(err.split(" To resume it:")[0].strip()), study)
     if err:
@@ -245,22 +227,23 @@ def run(
     Interrupted
         A KeyboardInterrupt: the run was stopped. Its `study` has what was done.
     """
-    settings = _setting_words(set, sweep)
+    options: dict[str, Any] = {"trials": trials, "seed": seed, "threads": threads, "keep": keep, "force": force}
+    options |= settings_of(set, sweep)
     if executor is not None:
         if until is not None:
             raise _core.InputError("cannot stop shards by until (none of them has all trials). Leave executor out.")
         if output is not None and os.path.exists(output) and not overwrite:
             raise _core.InputError(f"cannot write {output} (it exists). Say overwrite=True, or name another.")
-        options = _option_words(trials=trials, seed=seed, threads=threads or 1, keep=keep, force=force) + settings
+        options["threads"] = threads or 1
         from credence._shards import shards_of
 
-        with _scenario_files(path_or_text) as paths, shards_of(paths, options, executor, shards, progress) as parts:
+        with scenario_files(path_or_text) as paths, shards_of(paths, options, executor, shards, progress) as parts:
             return merge(parts, output, overwrite=overwrite, progress=False)
     elif shards is not None:
         raise _core.InputError("shards: say nothing without an executor. Give both, or leave it out.")
-    options = _option_words(trials=trials, seed=seed, threads=threads, overwrite=overwrite, keep=keep, force=force)
-    with _scenario_files(path_or_text) as paths:
-        return _written(["run", *paths, *options, *settings, *_goal_words(until)], output, progress)
+    options |= {"overwrite": overwrite, "until": _goals(until)}
+    with scenario_files(path_or_text) as paths:
+        return _written("run", paths, options, output, progress)
 
 
 @doors.door(paths=doors.paths, output=doors.output, overwrite=doors.flag, progress=doors.flag)
@@ -285,16 +268,17 @@ def merge(
     InputError
         A ValueError: shards are not of one study, or blocks are missing.
     """
-    words = ["merge", *(os.fspath(path) for path in paths), *_option_words(overwrite=overwrite)]
-    return _written(words, output, progress)
+    return _written("merge", [os.fspath(path) for path in paths], {"overwrite": overwrite}, output, progress)
 
 
-def _written(words: list[str], output: File | None, progress: bool | None) -> Study:
+def _written(
+    name: str, arguments: Sequence[str], options: Mapping[str, object], output: File | None, progress: bool | None
+) -> Study:
     """Run a command that writes a results file, a temporary one without `output`."""
     if output is not None:
-        return _finish(words, os.fspath(output), progress)
+        return _finish(name, arguments, options, os.fspath(output), progress)
     folder = tempfile.mkdtemp(prefix="credence-")
-    return _finish(words, os.path.join(folder, "study.h5"), progress, folder)
+    return _finish(name, arguments, options, os.path.join(folder, "study.h5"), progress, folder)
 
 
 @doors.door(study=FILE, trials=doors.whole(1), threads=doors.whole(1), until=doors.goals, progress=doors.flag)
@@ -322,8 +306,8 @@ def resume(
     Study
         The same file, opened again.
     """
-    words = ["run", "--resume", *_option_words(trials=trials, threads=threads), *_goal_words(until)]
-    resumed = _finish(words, _path_of(study), progress)
+    options: dict[str, object] = {"resume": True, "trials": trials, "threads": threads, "until": _goals(until)}
+    resumed = _finish("run", [], options, _path_of(study), progress)
     weakref.finalize(resumed, _release, study)  # a temporary file lives as long as either study
     return resumed
 
@@ -376,21 +360,11 @@ def replay(
     """
     from credence.trajectory import open_trajectories
 
-    words = _option_words(scenario=scenario, arm=arm, trial=trial, noise=noise, overwrite=overwrite)
+    options = {"scenario": scenario, "arm": arm, "trial": trial, "noise": noise, "overwrite": overwrite}
     with tempfile.TemporaryDirectory(prefix="credence-") as folder:
         path = os.path.join(folder, "trial.h5") if output is None else os.fspath(output)
-        _command(["replay", _path_of(study), *words, *_setting_words(set, None), f"--output={path}"])
+        _command("replay", [_path_of(study)], {**options, **settings_of(set), "output": path})
         return open_trajectories(path)  # the open file outlives its name
-
-
-class _Judged:
-    """What ``credence judge`` says of records, which are read for each format."""
-
-    def __init__(self, words: Sequence[str]) -> None:
-        self._words = words
-
-    def in_format(self, form: str) -> str:
-        return _core.command([*self._words, f"--format={form}", "--quiet"], None)[1]
 
 
 class Printed:
@@ -402,12 +376,10 @@ class Printed:
         What the command prints with ``--format json``, the same bits.
     """
 
-    def __init__(self, command: str, paths: Sequence[str], words: Sequence[str]) -> None:
-        whole = [command, *paths, *words]
-        _refuse_what_is_not_utf8(whole)
+    def __init__(self, command: str, paths: Sequence[str], options: Mapping[str, object]) -> None:
+        _refuse_what_is_not_utf8(paths, options)
         with errors_of_arguments():
-            kind = _Judged if command == "judge" else _core.Said
-            self._said = kind(whole)
+            self._said = _core.Said(command, paths, options)
         self.json: list[dict[str, Any]] = json.loads(self._said.in_format("json"))
 
     def __str__(self) -> str:
@@ -430,22 +402,20 @@ class Comparison(Printed):
     """Arms or runs compared trial by trial, A - B; `json` has an entry for each scenario and pair."""
 
 
-def _records_of(study: Any) -> dict[str, str] | None:
-    """{arm: path} of what has records: a simulation, one of its arms, a study of records, or a record; None else."""
-    if hasattr(study, "failures"):  # a Simulation, or one of its arms
-        return study.records if hasattr(type(study), "records") else {study.name: study.path}
-    if not isinstance(study, (str, os.PathLike)):
-        return {arm.name: path for arm, path in zip(study.arms, study.records)} or None
+def _sources_of(results: Results | File) -> Sources:
+    if isinstance(results, Results):
+        return results.sources()
     with contextlib.suppress(ImportError):  # without h5py there is no record but by judge
         from credence._file import records_in
 
-        return records_in(study) or None
-    return None
+        if records := records_in(results):
+            return Sources(records=records)
+    return Sources(os.fspath(results))
 
 
 @doors.door(study=REPORTED)
 def report(
-    study: Study | Simulation | SimulatedArm | File,
+    study: Results | File,
     *,
     margin: float | str | None = None,
     margin_direction: float | str | None = None,
@@ -465,12 +435,13 @@ def report(
     -------
     Report
     """
-    records = _records_of(study)
-    failed = getattr(study, "_limit", None) if failed is None else failed
-    words = _option_words(margin=margin, margin_direction=margin_direction, bias=bias, failed=failed)
-    if records is None:
-        return Report("report", [_path_of(study)], words)  # type: ignore[arg-type]
-    return Report("judge", list(records.values()), words)
+    sources = _sources_of(study)
+    if failed is None and isinstance(study, Results):
+        failed = study.limit
+    options = {"margin": margin, "margin_direction": margin_direction, "bias": bias, "failed": failed}
+    if sources.records:
+        return Report("judge", list(sources.records.values()), {**options, "quiet": True})
+    return Report("report", [sources.study], options)
 
 
 def _compared_records(given: Sequence[dict[str, str]], arms: str | tuple[str, str] | None) -> list[str]:
@@ -500,16 +471,9 @@ def _compared_records(given: Sequence[dict[str, str]], arms: str | tuple[str, st
     return [records[common[0]] for records in given]
 
 
-def _refuse_other_seeds(studies: Sequence[Any]) -> None:
-    seeds = [study.seed for study in studies if hasattr(type(study), "records") and study.seed is not None]
-    if len(set(seeds)) > 1:
-        raise _core.InputError(f"cannot compare simulations of seeds {seeds[0]} and {seeds[-1]} (their trials share no "
-                               "random numbers, and are no pairs). Give both the same seed.")
-
-
 @doors.door(arms=doors.texts)
 def compare(
-    *studies: Study | Simulation | SimulatedArm | File,
+    *studies: Results | File,
     arms: str | tuple[str, str] | None = None,
     failed: float | str | None = None,
 ) -> Comparison:
@@ -531,16 +495,14 @@ def compare(
     -------
     Comparison
     """
-    records = [_records_of(study) for study in studies]
-    of_records = [one for one in records if one is not None]
+    sources = [_sources_of(study) for study in studies]
+    of_records = [one.records for one in sources if one.records]
     if of_records and len(of_records) < len(studies):
         raise _core.InputError("cannot compare records with results files. Give studies of one kind.")
     if of_records:
-        _refuse_other_seeds(studies)
-        return Comparison("compare", _compared_records(of_records, arms), _option_words(failed=failed))
+        return Comparison("compare", _compared_records(of_records, arms), {"failed": failed})
     both = arms if arms is None or isinstance(arms, str) else ",".join(arms)
-    paths = [_path_of(study) for study in studies]  # type: ignore[arg-type]
-    return Comparison("compare", paths, _option_words(arms=both, failed=failed))
+    return Comparison("compare", [one.study for one in sources], {"arms": both, "failed": failed})
 
 
 @doors.door(path_or_text=doors.paths, set=SETTINGS, sweep=doors.sweep)
@@ -559,5 +521,5 @@ def show(
     set, sweep : dict
         As of `run`.
     """
-    with _scenario_files(path_or_text) as paths:
-        return _command(["show", *paths, *_setting_words(set, sweep)])[1]
+    with scenario_files(path_or_text) as paths:
+        return _command("show", paths, settings_of(set, sweep))[1]

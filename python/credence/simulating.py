@@ -19,9 +19,7 @@ import inspect
 import math
 import os
 import re
-import shutil
 import tempfile
-import weakref
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -33,12 +31,14 @@ from credence import _core
 from credence import _doors as doors
 from credence._calls import errors_of_arguments, framed, note, progress_bar, said_of_arrays
 from credence._names import printable
-from credence._outputs import check_output
+from credence._outputs import check_output, goes_with
+from credence._record import Run
+from credence._results import Results, Sources
 from credence._trial_files import Trials, get_text, write_records
-from credence._trials import BATCH, Arms, Array, Failure, Frame, Run, Work, generator, is_frame, run_chunk, same
+from credence._trials import BATCH, Arms, Array, Failure, Frame, Work, generator, is_frame, run_chunk, same
 from credence._workers import TRIES, Workers
 from credence.judging import REFUTED, Verdict, judge, tune_hint
-from credence.program import SEED, Interrupted
+from credence.program import SEED, Interrupted, Report, compare
 
 if TYPE_CHECKING:
     from credence.arm import Arm
@@ -143,7 +143,7 @@ class _Files:
         folder = tempfile.mkdtemp(prefix="credence-") if output is None else None
         self.record = Path(folder, f"{ONLY_ARM}.h5") if folder else self._checked(output, resume)
         self.trials = self._trials_of(self.record)
-        self._remove = weakref.finalize(self, _remove, folder, os.getpid()) if folder else None
+        self._remove = goes_with(self, folder) if folder else None
 
     @staticmethod
     def _trials_of(record: Path) -> Path:
@@ -179,12 +179,6 @@ class _Files:
             self._remove()
 
 
-def _remove(folder: str, owner: int) -> None:
-    """Remove a temporary folder, unless this process is a fork of its owner."""
-    if os.getpid() == owner:
-        shutil.rmtree(folder, ignore_errors=True)
-
-
 def _entries(name: str, text: str) -> Any:
     """An attribute of a record: groups as a dict of their members, names as a list, the others as they are."""
     if name in ("manifold", "chart", "quaternion"):
@@ -199,7 +193,7 @@ def _entries(name: str, text: str) -> Any:
     return groups
 
 
-class SimulatedArm:
+class SimulatedArm(Results):
     """One arm of a simulation: its record, and what is said of it. What an `Arm` of a study has, it has too:
     ``arm["trace_P"]`` [trial], ``arm.per_step("trace_P")``, ``arm.mean("rmse", minus=other)``.
 
@@ -213,13 +207,13 @@ class SimulatedArm:
     """
 
     def __init__(self, name: str, files: _Files, failures: list[Failure], limit: float | str) -> None:
-        self.name, self.failures, self._limit, self._files = name, failures, limit, files
+        self.name, self.failures, self.limit, self._files = name, failures, limit, files
         self.path = str(files.record) if files.arms is None else f"{files.record}:{name}"
         self._verdict: Verdict | None = None
 
     def judge(self, **options: Any) -> Verdict:
         """The verdict with other options of `credence.judge`, such as `margin`."""
-        return judge(self.path, **{"failed": self._limit, "progress": False, **options})
+        return judge(self.path, **{"failed": self.limit, "progress": False, **options})
 
     @property
     def verdict(self) -> Verdict:
@@ -237,11 +231,19 @@ class SimulatedArm:
             yield file if self._files.arms is None else file[self.name]
 
     @functools.cached_property
-    def results(self) -> Arm:
-        """Its columns and series, as those of an arm of a study."""
+    def study(self) -> Study:
+        """Its columns and series, as those of a study of one arm that `credence.run` gives."""
         from credence.study import of_records
 
-        return of_records([self.path]).arms[0]
+        return of_records([self.path])
+
+    def sources(self) -> Sources:
+        return Sources(records={self.name: self.path})
+
+    @functools.cached_property
+    def results(self) -> Arm:
+        """Its columns and series, as those of an arm of a study."""
+        return self.study.arms[0]
 
     def mean(self, name: str, minus: SimulatedArm | None = None) -> Means:
         """The mean of a column, or of its differences trial by trial to another arm, as of `Arm.mean`."""
@@ -300,7 +302,7 @@ class SimulatedArm:
         return f"<credence.SimulatedArm {self.name}: {self.path}>"
 
 
-class Simulation:
+class Simulation(Results):
     """Trials of a filter under one arm or several. ``str()`` is what ``credence judge`` says of them.
 
     Attributes
@@ -318,7 +320,7 @@ class Simulation:
         self, files: _Files, work: Work, trials: int, failures: list[Failure], limit: float | str, is_repeatable: bool
     ) -> None:
         self.trials, self.seed, self.failures, self.is_repeatable = trials, work.seed, failures, is_repeatable
-        self._work, self._limit, self._path = work, limit, str(files.record)
+        self._work, self.limit, self._path = work, limit, str(files.record)
         self._arms = {
             name: SimulatedArm(name, files, [one for one in failures if one.arm == name], limit) for name in work.arms
         }
@@ -360,22 +362,21 @@ class Simulation:
 
     def compare(self, arms: str | tuple[str, str] | None = None, failed: float | str | None = None) -> Comparison:
         """What `credence.compare` says of the arms: A - B of those named, else of every arm and the first."""
-        from credence.program import compare
-
-        return compare(self, arms=arms, failed=self._limit if failed is None else failed)
+        return compare(self, arms=arms, failed=self.limit if failed is None else failed)
 
     @property
     def records(self) -> dict[str, str]:
         """{arm: the path of its record}."""
         return {name: arm.path for name, arm in self._arms.items()}
 
-    def _said(self, form: str) -> str:
-        words = ["judge", self._path, f"--failed={self._limit}", f"--format={form}", "--quiet"]
-        with errors_of_arguments():
-            return _core.command(words, None)[1]
+    def sources(self) -> Sources:
+        return Sources(records=self.records)
+
+    def _said(self) -> Report:
+        return Report("judge", [self._path], {"failed": self.limit, "quiet": True})
 
     def __str__(self) -> str:
-        lines = [self._said("text").rstrip("\n")]
+        lines = [str(self._said()).rstrip("\n")]
         if self.failures:
             first = self.failures[0]
             where = f"the first: trial {first.trial} of {first.arm}"
@@ -387,7 +388,7 @@ class Simulation:
         return "\n".join(lines) + "\n"
 
     def _repr_html_(self) -> str:
-        return framed(self._said("html"))
+        return framed(self._said().html)
 
     def __repr__(self) -> str:
         said = ", ".join(f"{name} {verdict.verdict}" for name, verdict in self.verdicts.items())
@@ -626,7 +627,7 @@ def _refuse_bad_limit(failed: float | str) -> None:
     one = (np.ones((1, 1)), float(np.finfo(float).eps))
     with errors_of_arguments(said_of_arrays):
         _core.judge(
-            {"error": one, "covariance": one}, {}, {}, {}, {"segments": "off", "failed": str(failed)}, b"", None
+            {"error": one, "covariance": one}, {}, {}, {}, {"segments": "off", "failed": failed}, b"", None
         )
 
 

@@ -12,7 +12,6 @@ docs/results-format.md says what is in a file. `arm.group` is the plain h5py gro
 
 from __future__ import annotations
 
-import configparser
 import html
 import json
 import os
@@ -23,82 +22,22 @@ from typing import TYPE_CHECKING, Any, overload
 import h5py
 
 from . import _doors as doors
+from ._errors import InputError
 from ._file import TRAJECTORIES, Identity, Source, open_hdf5, parted, records_in, stem, still_open, text
-from .arm import Arm
+from ._results import Results, Sources
+from .arm import Arm, Scenario
+from .grid import Grid, grids_of
 from .means import Means
 
 if TYPE_CHECKING:
     import xarray
-
-    from .grid import Grid
-    from .simulating import Simulation
 
 __all__ = ["Arm", "Means", "Scenario", "Study", "open"]
 
 SHOWN = 40  # arms of a study that its table in a notebook shows
 
 
-class Scenario:
-    """A scenario of a study: its arms by name, in the study's order."""
-
-    def __init__(self, group: h5py.Group) -> None:
-        self._group = group
-        self.name = stem(group)
-
-    @property
-    def group(self) -> h5py.Group:
-        """The plain h5py group."""
-        return still_open(self._group)
-
-    @property
-    def arms(self) -> dict[str, Arm]:
-        return {name: Arm(group) for name, group in self.group.items()}
-
-    @property
-    def text(self) -> str:
-        """The scenario as resolved: an INI text that ``credence.run`` reads."""
-        return text(self.group, "scenario")
-
-    def setting(self, name: str) -> str:
-        """A key such as ``noise.heading``, as text; empty where the world has none of that name."""
-        parser = configparser.ConfigParser(interpolation=None, delimiters=("=",), comment_prefixes=("#",))
-        parser.optionxform = str  # type: ignore[assignment,method-assign]
-        parser.read_string(self.text)
-        return parser.get(*name.split(".", 1), fallback="")
-
-    def published(self, column: str) -> dict[str, float]:
-        """{arm: value of the column in the published single run}, where the scenario names one."""
-        pairs = [pair.split() for pair in self.setting(f"published.{column}").split(",") if pair.strip()]
-        return {pair[0]: float(pair[1]) for pair in pairs if len(pair) == 2}
-
-    @property
-    def sweep(self) -> tuple[str, dict[str, float | str]] | None:
-        """(scenario that was swept, {key: value here}) of a point of a grid; None of another scenario."""
-        if "sweep_of" not in self.group.attrs:
-            return None
-        values = {key: self.group.attrs[f"sweep.{key}"] for key in text(self.group, "sweep_keys").split()}
-        return text(self.group, "sweep_of"), {
-            key: text(self.group, f"sweep.{key}") if isinstance(value, bytes | str) else float(value)
-            for key, value in values.items()}
-
-    def __getitem__(self, arm: str) -> Arm:
-        if arm not in self.group:
-            raise KeyError(f"{self.name} has no arm {arm}. It has {', '.join(self.group)}")
-        return Arm(self.group[arm])
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.group)
-
-    def __len__(self) -> int:
-        return len(self.group)
-
-    def __repr__(self) -> str:
-        if not self._group:
-            return "<credence.Scenario, closed>"
-        return "\n".join([f"<credence.Scenario {self.name}>", *(f"  {arm!r}" for arm in self.arms.values())])
-
-
-class Study:
+class Study(Results):
     """A results file. ``study["scenario", "arm"]`` is an Arm and ``study["scenario"]`` a Scenario; in a study of one
     scenario ``study["arm"]`` is an Arm, too. Close it, or use it in a `with` statement, to let go of the file."""
 
@@ -148,18 +87,36 @@ class Study:
         return str(self.file.filename)
 
     @property
+    def study(self) -> Study:
+        """Itself, which `Simulation.study` is of a simulation."""
+        return self
+
+    def sources(self) -> Sources:
+        if records := self.records:
+            return Sources(records={arm.name: path for arm, path in zip(self.arms, records)})
+        if self.identity is None:
+            raise InputError("cannot use a study in memory here (it has no path). Give the path of its file.")
+        if Identity.of(self.path) != self.identity:
+            why = "it was changed, replaced or removed since the study was opened"
+            raise InputError(f"cannot use {self.path} ({why}). Open it again.")
+        return Sources(self.path)
+
+    @property
     def grids(self) -> list[Grid]:
         """The grids that sweeps made (docs/sweep.md), as arrays of scenarios with coordinates."""
-        from .grid import grids_of
-
-        return grids_of(self)
+        return grids_of(self.scenarios)
 
     def to_xarray(self) -> xarray.DataTree:
         """The study as an xarray.DataTree: a node for each scenario, and in it one for each arm. It reads the file.
         Needs xarray 2024.10 or later; Arm.to_xarray works with any."""
-        from .grid import study_to_xarray
+        import xarray
 
-        return study_to_xarray(self)
+        if not hasattr(xarray, "DataTree"):
+            raise ImportError(f"xarray {xarray.__version__} has no DataTree. Install xarray 2024.10 or later, or take "
+                              "Arm.to_xarray, a Dataset of each arm.")
+        nodes = {f"/{arm.scenario.name}/{arm.name}": arm.to_xarray() for arm in self.arms}
+        root = xarray.Dataset(attrs={"trials": self.trials, "seed": str(self.seed), "complete": int(self.complete)})
+        return xarray.DataTree.from_dict({"/": root, **nodes})
 
     def close(self) -> None:
         self._file.close()
@@ -246,13 +203,13 @@ def of_records(paths: Sequence[str]) -> Study:
 
 
 def _openable(name: str, value: Any) -> Any:
-    if hasattr(type(value), "verdicts"):  # a Simulation
+    if isinstance(value, Results):
         return value
     return doors.paths(name, value) if isinstance(value, (list, tuple)) else doors.source(name, value)
 
 
 @doors.door(source=_openable)
-def open(source: Source | Simulation | Sequence[str | os.PathLike[str]]) -> Study:
+def open(source: Source | Results | Sequence[str | os.PathLike[str]]) -> Study:
     """Opens a results file, of which nothing but the header is read; or records, which are read whole.
 
     Parameters
@@ -270,8 +227,9 @@ def open(source: Source | Simulation | Sequence[str | os.PathLike[str]]) -> Stud
     FileNotFoundError, ValueError
         The file is not there, or is not a results file of a version that this package reads.
     """
-    if hasattr(type(source), "verdicts"):  # a Simulation
-        return source.study  # type: ignore[union-attr]
+    if isinstance(source, Results):
+        study: Study = source.study
+        return study
     if isinstance(source, (list, tuple)):
         return of_records([os.fspath(one) for one in source])
     if records := records_in(source):

@@ -12,7 +12,7 @@ import numpy as np
 
 from . import _doors as doors
 from ._file import RESULTS, Array, FloatArray, Source, Variables, open_hdf5, stem, text
-from .study import Scenario
+from .arm import Scenario
 
 
 class Trajectory(Variables):
@@ -75,9 +75,7 @@ class Trajectory(Variables):
         robot = self.components.index("r_x")
         return values[:, robot:robot + 2], values[:, robot + 2:].reshape(len(values), -1, 2)
 
-    def __repr__(self) -> str:
-        if not self._group:
-            return "<credence.Trajectory, closed>"
+    def _said(self) -> str:
         return f"<credence.Trajectory {self.group.name[1:]}, {self.source}: {self.status}>"
 
 

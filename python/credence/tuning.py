@@ -232,9 +232,16 @@ class Tuned:
     def plot(self) -> Picture:
         """The score over each parameter, and of two parameters where the search was. It shows what was evaluated, and
         evaluates nothing again. Needs matplotlib."""
-        from credence.pictures.tuning import picture
+        from credence.pictures.tuning import Parameter, picture
 
-        return picture(self)
+        tried, rises = self.searched()
+        drawn = [
+            Parameter(name, self.start[name], *found, self.is_log(name), self.parabola(name), tried[name])
+            for name, found in self.parameters.items()
+        ]
+        said = ", ".join(f"{name} {found}" for name, found in self.parameters.items())
+        message = f"The score is best at {said}; with it the filter is {self.verdict.verdict}"
+        return picture(drawn, rises, message, f"{self.name}, {self.tuned_on}")
 
     def __str__(self) -> str:
         return "\n".join(_said(self)) + "\n"
@@ -322,7 +329,7 @@ def _said(tuned: Tuned) -> list[str]:
         if objective.source.objective != "nees":
             cause = "what is left has another cause, such as linearisation, a missing state or a bias"
             notes.append(f"The best of these parameters do not make the filter right: {cause}.")
-        notes += [f"left: {finding['text']}" for finding in tuned.verdict.findings[:4]]
+        notes += [f"left: {finding.text}" for finding in tuned.verdict.findings[:4]]
     return lines + (["", *notes] if notes else [])
 
 

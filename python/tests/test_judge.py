@@ -142,7 +142,7 @@ def test_what_does_not_fit_is_refused(arguments, message):
 
 
 def test_a_path_stands_alone():
-    with pytest.raises(TypeError, match="Give the path alone"):
+    with pytest.raises(TypeError, match="Give it alone"):
         credence.judge("record.h5", np.zeros((1, 1, 1)))
 
 
@@ -236,7 +236,7 @@ def test_a_fault_of_every_third_trial_is_found_in_any_order():
             for one in (errors, errors[rng.permutation(600)], errors[rng.permutation(600)][:, :, ::-1])
         ]
         assert {one.verdict for one in verdicts} == {"mixed"}
-        assert len({tuple(finding["about"] for finding in one.findings) for one in verdicts}) == 1
+        assert len({tuple(finding.about for finding in one.findings) for one in verdicts}) == 1
 
 
 def test_strict_makes_notes_fail():
@@ -284,7 +284,7 @@ def test_what_cancels_over_all_steps_is_found_in_its_tenths():
     halves = np.where(np.arange(50) < 25, 0.5, -0.5)[:, None]
     moved = (errors + halves) / np.sqrt(1.25)  # of mean square 1 at every step
     found = credence.judge(moved, covariance)
-    assert [one["about"] for one in found.findings] == ["tenth"]
+    assert [one.about for one in found.findings] == ["tenth"]
     early = errors * np.where(np.arange(50) < 25, 0.83, 1.145)[:, None]
     assert credence.judge(early, covariance, margin=0.1).verdict != "consistent"
 
@@ -298,12 +298,12 @@ def test_p_that_is_wrong_where_it_is_large_and_where_it_is_small_is_found():
     assert right.verdict == "consistent"
     wrong = errors * np.where(scale < 1, 1.15, 0.816)  # NEES/n 1.32 where P is small, 0.67 where it is large
     found = credence.judge(wrong, covariance)
-    calibration = [one for one in found.findings if one["about"] == "calibration"]
-    assert {one["when"] for one in calibration} >= {
+    calibration = [one for one in found.findings if one.about == "calibration"]
+    assert {one.when for one in calibration} >= {
         "the fifth of the trials with the smallest P",
         "the fifth of the trials with the largest P",
     }
-    assert [one["what"] for one in calibration] == ["optimistic", "optimistic", "pessimistic", "pessimistic"]
+    assert [one.what for one in calibration] == ["optimistic", "optimistic", "pessimistic", "pessimistic"]
 
 
 def test_innovations_alone_are_judged_for_their_covariance():
@@ -317,7 +317,7 @@ def test_innovations_alone_are_judged_for_their_covariance():
     assert right["groups"][0]["nees_ratio"] == same["groups"][0]["nees_ratio"]
     assert right["nis"] != []
     shifted = credence.judge(innovation=nu + np.array([0.5, 0]), innovation_covariance=S)
-    assert [one["where"] for one in shifted.findings if one["about"] == "bias"] == ["row_0"]
+    assert [one.where for one in shifted.findings if one.about == "bias"] == ["row_0"]
     missed = nu.copy()
     missed[:, 5:8] = np.nan  # nothing is measured at three steps
     assert credence.judge(innovation=missed, innovation_covariance=S).verdict == "consistent"

@@ -226,9 +226,9 @@ def with_decimal_commas(_):
             verdict = credence.judge(error, ones, innovation=error, innovation_covariance=ones)
             for one in (credence.report("noisy.h5"), credence.compare("noisy.h5"), verdict):
                 print(one, one.html, one.json)
-            replay = "replay --scenario=scenario --arm=fixed --trial=3"
-            for words in ("report --format=csv", "compare --format=csv", replay):
-                print(credence._core.command([*words.split(), "noisy.h5"], None))
+            table, trial = {{"format": "csv"}}, {{"scenario": "scenario", "arm": "fixed", "trial": 3}}
+            for name, options in (("report", table), ("compare", table), ("replay", trial)):
+                print(credence._core.command(name, ["noisy.h5"], options, None))
             print(credence.show(SCENARIO, set={{"noise.heading": 0.25}}))
             credence.run(SCENARIO, trials=8192, until="trace_P=1e-9")  # which is warned of
         """)

@@ -250,7 +250,8 @@ def test_progress_is_heard_to_its_end():
     heard = []
     with_text = pathlib.Path("small.ini")
     with_text.write_text(SCENARIO)
-    _core.command(["run", "small.ini", "--trials=600", "-o", "small.h5", "--quiet"], lambda *now: heard.append(now))
+    options = {"trials": 600, "output": "small.h5", "quiet": True}
+    _core.command("run", ["small.ini"], options, lambda *now: heard.append(now))
     assert heard[-1] == (600, 600)
     assert heard == sorted(heard)
 

@@ -200,6 +200,15 @@ std::optional<Parsed> parse(const Command& command, const std::vector<std::strin
     return parsed;
 }
 
+Parsed parsed_of(const Command& command, std::vector<std::string> arguments, Values values) {
+    Parsed parsed;
+    parsed.arguments = std::move(arguments);
+    parsed.values = std::move(values);
+    parsed.command = &command;
+    take_suffix(command, parsed);
+    return parsed;
+}
+
 namespace {
 
 /// The share that an option gives, between 0 and 1, both excluded.

@@ -33,11 +33,14 @@ struct Command {
     std::vector<Option> options;
 };
 
+/// The values of options by their long names; a switch has one, which is empty.
+using Values = std::map<std::string, std::vector<std::string>>;
+
 /// The parsed command line.
 class Parsed {
 public:
     std::vector<std::string> arguments;               ///< the arguments that are not options
-    std::map<std::string, std::vector<std::string>> values;
+    Values values;
     const Command* command = nullptr;                 ///< the command they belong to
 
     bool has(const std::string& option) const { return values.count(option) > 0; }
@@ -59,6 +62,8 @@ public:
 /// Reads the arguments after the subcommand; throws InputError for an unknown, repeated or incomplete option, with the
 /// closest known one. Nothing if `--help` was asked for and has been printed.
 std::optional<Parsed> parse(const Command& command, const std::vector<std::string>& arguments);
+/// The same of arguments and options that are no words, but values in memory.
+Parsed parsed_of(const Command& command, std::vector<std::string> arguments, Values values);
 
 /// --margin, --margin-direction, --bias and --failed, with their defaults; throws InputError.
 Limits parse_limits(const Parsed& parsed);
@@ -105,13 +110,15 @@ struct ReportRequest {
     Limits limits;
 };
 ReportRequest read_report_request(const Parsed& parsed);
+std::string rendered(const Report& report, const std::string& format, const std::string& path, const RunFacts& run);
 /// `path` and `run`: the source of the report's numbers.
 int give_report(const Parsed& parsed, const ReportRequest& request, const Report& report, const std::string& path,
                 const RunFacts& run);
 
-/// What `report` or `compare` says of files, computed once: its text in a format of the command.
+/// What `report`, `judge` or `compare` says of files, computed once: its text in a format of the command.
 using Rendering = std::function<std::string(const std::string& format)>;
 Rendering reported(const Parsed& parsed);
+Rendering judged(const Parsed& parsed);
 Rendering compared(const Parsed& parsed);
 
 // The subcommands: their descriptions, and the functions that run them and return the exit code.
@@ -136,6 +143,8 @@ int completion(const Parsed& parsed);
 
 /// Runs the words of a command line, without `credence`, and returns the exit code; errors are thrown.
 int obey(const std::vector<std::string>& words);
+/// Runs the command whose options these are.
+int obey(const Parsed& parsed);
 /// Throws InputError where this process cannot do the command's work, whatever its arguments: such faults of its
 /// environment need not be those of a process on another machine.
 void check_process(const std::vector<std::string>& words);

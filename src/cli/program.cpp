@@ -122,6 +122,17 @@ int cli::obey(const std::vector<std::string>& words) {
     return arguments.empty() ? help() : dispatch(arguments.front(), {"--help"}, "");
 }
 
+int cli::obey(const Parsed& parsed) {
+    const std::string& name = parsed.command->name;
+    const ExitGuard guard(program_name() + " " + name);
+    std::vector<std::string> words{name};
+    std::ranges::copy(parsed.arguments, std::back_inserter(words));
+    for (const auto& [option, values] : parsed.values)
+        for (const std::string& value : values) words.push_back("--" + option + (value.empty() ? "" : "=" + value));
+    const auto named = [&](const Subcommand& one) { return one.command().name == name; };
+    return std::ranges::find_if(subcommands(), named)->work(parsed, command_line(words));
+}
+
 void cli::check_process(const std::vector<std::string>& words) {
     if (names_command(words) && words.front() != "help") best_target(), check_stack();
 }

@@ -38,14 +38,14 @@ ReportRequest read_report_request(const Parsed& parsed) {
     return request;
 }
 
-namespace {
-
 std::string rendered(const Report& report, const std::string& format, const std::string& path, const RunFacts& run) {
     if (format == "json") return report_json(report);
     if (format == "csv") return report_csv(report);
     if (format == "html") return report_html(report, {std::filesystem::path(path).filename().string(), run, made_by()});
     return report_text(report);
 }
+
+namespace {
 
 /// The path of the results file that is reported.
 const std::string& reported_path(const Parsed& parsed) {

@@ -5,11 +5,12 @@ from __future__ import annotations
 import inspect
 import os
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
 
-from credence import InputError, Run, judge
+from credence import InputError, Record, judge
 from credence._names import printable
 from credence.adapters.tables import existing, needed, note, one_line
 
@@ -118,8 +119,8 @@ def _order(source: str, arguments: Mapping[str, Any]) -> str:
 
 
 def _arguments(source: str, file: Mapping[str, Any], names: Mapping[str, str] | None) -> dict[str, Any]:
-    """The arrays of a file that are arguments of judge: those that are data, which are those of a Run, and `runs`."""
-    data = [*(name for name in inspect.signature(Run).parameters if name != "columns"), "runs"]
+    """The arrays of a file that are arguments of judge: the fields of a Record, and `runs`."""
+    data = [*(field.name for field in fields(Record) if field.name != "columns"), "runs"]
     for name, array in (names or {}).items():
         if name not in data:
             raise InputError(f"invalid names ({printable(name)} is no data of judge). Name some of {', '.join(data)}.")

@@ -6,14 +6,16 @@ import os
 import pathlib
 import tempfile
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any
 
 import matplotlib
 
 from .. import _doors as doors
 from .._file import RESULTS, open_hdf5, records_in
+from .._results import Results
+from ..arm import Scenario
 from ..grid import Grid
-from ..study import Scenario, Study
+from ..study import Study
 from ..study import open as open_study
 from ..trajectory import Trajectory, open_trajectories
 from . import animation, program, style, sweep, trajectory, verdicts
@@ -21,9 +23,6 @@ from .place import place
 from .steps import accuracy, chi_square, coverage, nees, nis, trace
 from .style import Picture as Picture
 from .trials import distribution, paired
-
-if TYPE_CHECKING:
-    from ..simulating import Simulation
 
 OF_SCENARIO: dict[str, Callable[..., Picture]] = {
     "verdicts": verdicts.verdicts, "nees": nees, "nis": nis, "coverage": coverage, "chi_square": chi_square,
@@ -34,11 +33,11 @@ OF_TRIAL: dict[str, Callable[..., Picture]] = {
 
 
 @doors.door(
-    what=doors.file_or("Study", "Simulation", "Scenario", "Grid", "Trajectory"), kind=doors.text, scenario=doors.text,
-    arms=doors.texts, width=doors.above_zero, path=doors.output, title=doors.flag,
+    what=doors.file_or("Study", "Simulation", "SimulatedArm", "Scenario", "Grid", "Trajectory"), kind=doors.text,
+    scenario=doors.text, arms=doors.texts, width=doors.above_zero, path=doors.output, title=doors.flag,
 )  # fmt: skip
 def plot(
-    what: Study | Simulation | Scenario | Grid | Trajectory | str | os.PathLike[str],
+    what: Results | Scenario | Grid | Trajectory | str | os.PathLike[str],
     kind: str | None = None,
     *,
     scenario: str | None = None,
@@ -52,7 +51,7 @@ def plot(
 
     Parameters
     ----------
-    what : Study, Simulation, Scenario, Grid, Trajectory or path
+    what : Study, Simulation or one of its arms, Scenario, Grid, Trajectory or path
         What to draw: of a study its first scenario, or its first grid where it has one; what `simulate` gives, or the
         path of a record; of a path to a trajectory file its first trial.
     kind : str, optional
@@ -83,15 +82,10 @@ def plot(
     """
     if isinstance(what, str | os.PathLike):
         what = _first(what)
-    if hasattr(type(what), "verdicts"):  # a Simulation, whose module needs the compiled one
-        what = cast("Simulation", what).study
-    what = cast("Study | Scenario | Grid | Trajectory", what)
-    if isinstance(what, Study):
-        grids = what.grids
-        if scenario is None and grids and kind in (None, "sweep"):
-            what = grids[0]
-        else:
-            what = what.scenarios[scenario or next(iter(what))]
+    if isinstance(what, Results):
+        study: Study = what.study
+        has_grid = scenario is None and kind in (None, "sweep") and study.grids
+        what = study.grids[0] if has_grid else study.scenarios[scenario or next(iter(study))]
     with matplotlib.rc_context(style.PRINT):
         picture = _drawn(what, kind, arms, width, options)
         if not title:
@@ -119,8 +113,7 @@ def _first(path: str | os.PathLike[str]) -> Study | Trajectory:
 def _drawn(what: Scenario | Grid | Trajectory, kind: str | None, arms: Sequence[str] | None, width: float,
            options: dict[str, Any]) -> Picture:
     if isinstance(what, Grid):
-        first = what.study[next(name for name in what.names.flat if name)]
-        wanted = [arm_meant(first, name) for name in arms] if arms else None
+        wanted = [arm_meant(what.points[0], name) for name in arms] if arms else None
         return _known({"sweep": sweep.sweep}, kind or "sweep")(what, width, wanted=wanted, **options)
     if isinstance(what, Trajectory):
         return _known(OF_TRIAL, kind or "path")(what, width, **options)
@@ -159,7 +152,7 @@ def _known(kinds: dict[str, Callable[..., Picture]], kind: str) -> Callable[...,
     credence=doors.path, progress=doors.flag,
 )  # fmt: skip
 def animate(
-    what: Study | Trajectory | str | os.PathLike[str],
+    what: Results | Trajectory | str | os.PathLike[str],
     *,
     path: str | os.PathLike[str] | None = None,
     trial: int = 0,
@@ -204,13 +197,14 @@ def animate(
         animation.animate(what, str(path), ellipse=ellipse, frames_per_second=frames_per_second,
                           progress=progress)
         return path
-    if hasattr(type(what), "verdicts") or what.records:
+    study: Study = what.study
+    if study.records:
         raise ValueError("cannot run a trial of records again (`credence.run` did not make them). Choose a study.")
-    scenario = scenario or next(iter(what))
-    arm = arm_meant(what.scenarios[scenario], arm) if arm else list(what.scenarios[scenario])[-1]
+    scenario = scenario or next(iter(study))
+    arm = arm_meant(study.scenarios[scenario], arm) if arm else list(study.scenarios[scenario])[-1]
     with tempfile.TemporaryDirectory(prefix="credence-") as folder:
         file = os.path.join(folder, "trial.h5")
-        program.replay(what.path, scenario, arm, trial, file, credence)
+        program.replay(study.path, scenario, arm, trial, file, credence)
         (trajectory_of_trial,) = open_trajectories(file)
         return animate(trajectory_of_trial, path=path or f"{scenario}-{arm}-{trial}.gif", ellipse=ellipse,
                        frames_per_second=frames_per_second, progress=progress)

@@ -7,8 +7,9 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from ..arm import Scenario
 from ..grid import Grid
-from ..study import Scenario, Study
+from ..study import Study
 from ..trajectory import Trajectory
 from .drawing import OF_SCENARIO, OF_TRIAL, arm_meant, opened
 from .trials import NAMES, NO_PAIR, pairs
@@ -91,7 +92,7 @@ def _of_study(study: Study, options: argparse.Namespace, left_out: list[str]) ->
 def _of_grid(grid: Grid, options: argparse.Namespace) -> Iterator[Job]:
     if options.kind and "sweep" not in options.kind:
         return
-    first = grid.study[next(name for name in grid.names.flat if name)]
+    first = grid.points[0]
     arms = _arms(first, options)
     stem = f"{grid.of}-{'-'.join(key.split('.')[-1] for key in grid.coordinates)}-sweep"
     for column in ("nees_ratio", "trace_P"):

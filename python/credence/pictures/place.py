@@ -11,7 +11,8 @@ import numpy as np
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from ..study import Scenario, Study
+from ..arm import Scenario
+from ..study import Study
 from ..trajectory import Trajectory, open_trajectories
 from . import program, style, trajectory
 from .steps import Arms, source

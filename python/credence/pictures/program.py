@@ -8,7 +8,7 @@ import os
 import pathlib
 import shutil
 import subprocess
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from .._file import parted
@@ -28,20 +28,22 @@ def find(asked: str | None = None) -> str | None:
     return str(built[0]) if built else shutil.which("credence")
 
 
-def said(words: list[str], program: str | None = None) -> Any:
+def said(command: str, arguments: Sequence[str], options: Mapping[str, object], program: str | None = None) -> Any:
     """What a command prints as JSON."""
+    options = {**options, "format": "json"}
     if not program:
         try:
             from credence import _core
         except ImportError:
             pass
         else:
-            return json.loads(_core.command(words, None)[1])
+            return json.loads(_core.command(command, arguments, options, None)[1])
     if (found := find(program)) is None:
         raise NoProgram("the program credence is not found. Install the package with its compiled module, or name the "
                         "program.")
+    words = [f"--{name}" if value is True else f"--{name}={value}" for name, value in options.items()]
     try:
-        done = subprocess.run([found, *words], capture_output=True, text=True)
+        done = subprocess.run([found, command, *arguments, *words], capture_output=True, text=True)
     except OSError as problem:
         raise NoProgram(f"{problem}.") from None
     if done.returncode != 0:
@@ -53,7 +55,7 @@ def report(
     path: str, program: str | None = None, records: Sequence[str] = ()
 ) -> dict[tuple[str, str], dict[str, Any]]:
     """{(scenario, arm): its part of the report}; of records what is judged of them."""
-    words = ("judge", *records, "--quiet") if records else ("report", path)
+    words = ("judge", *records) if records else ("report", path)
     return _report(words, tuple(os.stat(parted(one)[0]).st_mtime_ns for one in records or [path]), program)
 
 
@@ -61,11 +63,10 @@ def report(
 def _report(
     words: tuple[str, ...], _: tuple[int, ...], program: str | None
 ) -> dict[tuple[str, str], dict[str, Any]]:
-    parts = said([*words, "--format=json"], program)
+    parts = said(words[0], words[1:], {"quiet": True} if words[0] == "judge" else {}, program)
     return {(part["scenario"], part["arm"]): part for part in parts}
 
 
 def replay(path: str, scenario: str, arm: str, trial: int, output: str, program: str | None = None) -> None:
     """Writes the trajectory of one trial."""
-    said(["replay", path, f"--scenario={scenario}", f"--arm={arm}", f"--trial={trial}", f"--output={output}",
-          "--format=json"], program)
+    said("replay", [path], {"scenario": scenario, "arm": arm, "trial": trial, "output": output}, program)

@@ -10,8 +10,8 @@ from matplotlib.lines import Line2D
 from scipy import stats
 
 from .._file import FloatArray
-from ..arm import Arm
-from ..study import Scenario, Study
+from ..arm import Arm, Scenario
+from ..study import Study
 from . import style
 from .style import Picture
 

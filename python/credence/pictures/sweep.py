@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 
 from .._file import FloatArray
 from ..grid import Grid, as_text, mean_and_ends
+from ..study import Study
 from . import style, trials
 from .style import Picture
 
@@ -70,9 +71,9 @@ def sweep(grid: Grid, width: float, *, column: str = "nees_ratio", difference: b
           wanted: Sequence[str] | None = None) -> Picture:
     """A column along a swept key, with 95 % intervals, of all arms or of those wanted; or its differences A - B. A
     panel for each value of the other keys, the first four of them."""
-    study, panels = grid.study, list(slices(grid))
+    panels = list(slices(grid))
     shown = panels[:MOST_PANELS if width >= style.PAGE else 1]
-    first = study[next(name for name in grid.names.flat if name)]
+    first = grid.points[0]
     names, all_arms = wanted or list(first), list(first)
     drawn: dict[str, tuple[str, str | None]] = {arm: (arm, None) for arm in names}
     if difference:
@@ -80,7 +81,7 @@ def sweep(grid: Grid, width: float, *, column: str = "nees_ratio", difference: b
     places = {name: all_arms.index(arms[0]) for name, arms in drawn.items()}
     picture = Picture(width, 84)
     axes = picture.subplots(ncols=len(shown), sharey=True, squeeze=False)[0]
-    found = [{name: np.array([mean_and_ends(study[point], arms[0], column, arms[1]) if point else [np.nan] * 3
+    found = [{name: np.array([mean_and_ends(grid.scenarios[point], arms[0], column, arms[1]) if point else [np.nan] * 3
                               for point in names]) for name, arms in drawn.items()} for _, names in shown]
     for axis, (title, _), curves in zip(axes, shown, found, strict=True):
         _draw(axis, grid, curves, places)
@@ -111,8 +112,8 @@ def _message(grid: Grid, curves: dict[str, FloatArray], where: str, what: str) -
 
 
 def _source(grid: Grid, left_out: int) -> str:
-    scenarios = [grid.study[name] for name in grid.names.flat if name]
-    counts = [max(arm.trials for arm in scenario.arms.values()) for scenario in scenarios]
-    return (f"{grid.of}, {max(counts):,} trials each, seed {grid.study.seed}; shades or bars: 95 % intervals of means"
+    counts = [max(arm.trials for arm in scenario.arms.values()) for scenario in grid.points]
+    seed = Study(grid.points[0].group.file).seed
+    return (f"{grid.of}, {max(counts):,} trials each, seed {seed}; shades or bars: 95 % intervals of means"
             + (f"; {left_out} more panels in the file" if left_out else "")
             + (f"; {counts.count(0)} of {len(counts)} points are not run yet" if 0 in counts else ""))

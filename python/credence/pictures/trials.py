@@ -11,7 +11,8 @@ from matplotlib.lines import Line2D
 
 from .. import means
 from .._file import FloatArray
-from ..study import Scenario, Study
+from ..arm import Scenario
+from ..study import Study
 from . import style
 from .steps import Arms, source
 from .style import Picture

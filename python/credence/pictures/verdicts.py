@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from .._file import FloatArray
-from ..arm import Arm
-from ..study import Scenario, Study
+from ..arm import Arm, Scenario
+from ..study import Study
 from . import program, style
 from .steps import Arms, source
 from .style import Picture
