@@ -4,6 +4,7 @@
 #include "cli/command.hpp"
 
 #include <credence/study.hpp>
+#include <credence/text.hpp>
 
 #include <nanobind/nanobind.h>
 
@@ -49,6 +50,14 @@ auto alone(const Work& work) {
     const EndOfWork end;
     return work();
 }
+
+/// What `report`, `judge` or `compare` says, which was computed when it was asked: its formats are written later.
+struct Said {
+    cli::Rendering rendering;
+    std::string in(const std::string& format) const {
+        return alone([&] { return shown(rendering(format)); });
+    }
+};
 
 /// Whether Python is ending, and this thread's work is to end.
 bool must_end();

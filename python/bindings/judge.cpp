@@ -31,18 +31,6 @@ namespace {
 using Array = nb::ndarray<nb::ro, nb::device::cpu>;
 using Lists = std::map<std::string, std::vector<std::vector<std::string>>>;
 
-/// A report and the name of its source.
-struct Judgement {
-    Report report;
-    std::string name;
-
-    std::string text() const { return shown(report_text(report)); }
-    std::string json() const { return report_json(report); }
-    std::string html() const {
-        return report_html(report, {std::filesystem::path(name).filename().string(), {}, made_by()});
-    }
-};
-
 /// A path, or a name that may be one, in the bytes of the file system, which need not be UTF-8.
 std::string bytes_of(const nb::bytes& text) { return {text.c_str(), text.size()}; }
 
@@ -59,7 +47,7 @@ RecordArray described(const std::string& path, const Array& array, double epsilo
 }
 
 template <class Read>
-Judgement judgement(const std::string& name, const nb::dict& options, const Listener& listener, const Read& read) {
+Said judgement(const std::string& name, const nb::dict& options, const Listener& listener, const Read& read) {
     const cli::Command& command = cli::judge_command();
     const cli::Parsed parsed = cli::parsed_of(command, {}, values_of(command, options));
     const Limits limits = cli::parse_limits(parsed);
@@ -71,7 +59,10 @@ Judgement judgement(const std::string& name, const nb::dict& options, const List
         if (PyErr_CheckSignals() != 0) throw nb::python_error();
         if (listener) (*listener)(now.done, now.total);
     };
-    return alone([&] { return Judgement{make_record_report(read(progress, segments), name, limits), name}; });
+    return alone([&] {
+        const Report report = make_record_report(read(progress, segments), name, limits);
+        return Said{[report, name](const std::string& format) { return cli::rendered(report, format, name, {}); }};
+    });
 }
 
 using Arrays = std::map<std::string, std::pair<Array, double>>;
@@ -89,15 +80,15 @@ void check(const Arrays& arrays, const Texts& texts, const Lists& lists, const D
     alone([&] { check_record(record); });
 }
 
-Judgement judge(const Arrays& arrays, const Texts& texts, const Lists& lists, const Dimensions& dimensions,
-                const nb::dict& options, const nb::bytes& called, const Listener& listener) {
+Said judge(const Arrays& arrays, const Texts& texts, const Lists& lists, const Dimensions& dimensions,
+           const nb::dict& options, const nb::bytes& called, const Listener& listener) {
     const std::string name = bytes_of(called);
     const RecordArrays record = record_of(arrays, texts, lists, dimensions);
     return judgement(name, options, listener,
                      [&](const auto& progress, int segments) { return read_record(record, name, progress, segments); });
 }
 
-Judgement judge_file(const nb::bytes& file, const nb::dict& options, const Listener& listener) {
+Said judge_file(const nb::bytes& file, const nb::dict& options, const Listener& listener) {
     const std::string path = bytes_of(file);
     try {
         return judgement(path, options, listener, [&](const auto& progress, int segments) {
@@ -133,10 +124,6 @@ void write_results_of(const std::vector<nb::bytes>& files, std::uint64_t seed, c
 }  // namespace
 
 void bind_judge(nb::module_& module) {
-    nb::class_<Judgement>(module, "Judgement")
-        .def_prop_ro("text", [](const Judgement& judgement) { return alone([&] { return judgement.text(); }); })
-        .def_prop_ro("json", [](const Judgement& judgement) { return alone([&] { return judgement.json(); }); })
-        .def_prop_ro("html", [](const Judgement& judgement) { return alone([&] { return judgement.html(); }); });
     module.def("judge", judge, nb::arg("arrays"), nb::arg("texts"), nb::arg("lists"), nb::arg("dimensions"),
                nb::arg("options"), nb::arg("name"), nb::arg("progress").none());
     module.def("check", check, nb::arg("arrays"), nb::arg("texts"), nb::arg("lists"), nb::arg("dimensions"));

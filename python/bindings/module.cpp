@@ -9,7 +9,6 @@
 
 #include <credence/error.hpp>
 #include <credence/program.hpp>
-#include <credence/text.hpp>
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -78,25 +77,14 @@ std::tuple<int, std::string, std::string> command(const std::string& name, const
     });
 }
 
-/// What `report`, `judge` or `compare` says: it is computed when it is asked, and its formats are written later.
-class Said {
-public:
-    Said(const std::string& name, const std::vector<std::string>& arguments, const nb::dict& options) {
-        const cli::Parsed parsed = cli::parsed_of(command_of(name), arguments, values_of(command_of(name), options));
-        rendering_ = alone([&] {
-            return name == "report" ? cli::reported(parsed)
-                   : name == "judge" ? cli::judged(parsed)
-                                     : cli::compared(parsed);
-        });
-    }
-
-    std::string in(const std::string& format) const {
-        return alone([&] { return shown(rendering_(format)); });
-    }
-
-private:
-    cli::Rendering rendering_;
-};
+void say(Said* said, const std::string& name, const std::vector<std::string>& arguments, const nb::dict& options) {
+    const cli::Parsed parsed = cli::parsed_of(command_of(name), arguments, values_of(command_of(name), options));
+    new (said) Said{alone([&] {
+        return name == "report"  ? cli::reported(parsed)
+               : name == "judge" ? cli::judged(parsed)
+                                 : cli::compared(parsed);
+    })};
+}
 
 /// The program: the process is its own.
 int run_program(const std::vector<nb::bytes>& arguments) {
@@ -117,8 +105,7 @@ NB_MODULE(_core, module) {
                nb::arg("progress").none());
     module.def("program", run_program, nb::arg("arguments"));
     nb::class_<Said>(module, "Said")
-        .def(nb::init<const std::string&, const std::vector<std::string>&, const nb::dict&>(), nb::arg("name"),
-             nb::arg("arguments"), nb::arg("options"))
+        .def("__init__", say, nb::arg("name"), nb::arg("arguments"), nb::arg("options"))
         .def("in_format", &Said::in, nb::arg("format"));
     bind_judge(module);
     bind_turns();

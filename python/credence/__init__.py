@@ -16,46 +16,28 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from credence._core import Failure, InputError
     from credence._record import Record, Run
-    from credence.arm import Arm
+    from credence.arm import Arm, Scenario
     from credence.judging import Verdict, assert_consistent, judge
     from credence.pictures import animate, plot
     from credence.program import Comparison, Interrupted, Report, compare, merge, replay, report, resume, run, show
     from credence.simulating import Simulation, simulate
-    from credence.study import Scenario, Study, open
+    from credence.study import Study, open
     from credence.trajectory import Trajectory, open_trajectories
     from credence.tuning import Tuned, tune
 
-_modules = {
-    "Arm": "arm",
-    "Comparison": "program",
-    "Failure": "_core",
-    "InputError": "_core",
-    "Interrupted": "program",
-    "Record": "_record",
-    "Report": "program",
-    "Run": "_record",
-    "Scenario": "study",
-    "Simulation": "simulating",
-    "Study": "study",
-    "Trajectory": "trajectory",
-    "Tuned": "tuning",
-    "Verdict": "judging",
-    "animate": "pictures",
-    "assert_consistent": "judging",
-    "compare": "program",
-    "judge": "judging",
-    "merge": "program",
-    "open": "study",
-    "open_trajectories": "trajectory",
-    "plot": "pictures",
-    "replay": "program",
-    "report": "program",
-    "resume": "program",
-    "run": "program",
-    "show": "program",
-    "simulate": "simulating",
-    "tune": "tuning",
+_modules = {  # each with what it has for users
+    "_core": ("Failure", "InputError"),
+    "_record": ("Record", "Run"),
+    "arm": ("Arm", "Scenario"),
+    "judging": ("Verdict", "assert_consistent", "judge"),
+    "pictures": ("animate", "plot"),
+    "program": ("Comparison", "Interrupted", "Report", "compare", "merge", "replay", "report", "resume", "run", "show"),
+    "simulating": ("Simulation", "simulate"),
+    "study": ("Study", "open"),
+    "trajectory": ("Trajectory", "open_trajectories"),
+    "tuning": ("Tuned", "tune"),
 }
+_places = {name: module for module, names in _modules.items() for name in names}
 
 __all__ = [
     "Arm",
@@ -107,12 +89,12 @@ _warn_of_another()
 
 
 def __getattr__(name: str) -> object:
-    if name not in _modules:
+    if name not in _places:
         raise AttributeError(f"module 'credence' has no attribute {name!r}")
-    value = getattr(importlib.import_module(f"credence.{_modules[name]}"), name)
+    value = getattr(importlib.import_module(f"credence.{_places[name]}"), name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *_modules])
+    return sorted([*globals(), *_places])

@@ -342,12 +342,10 @@ def collected(work: Work, numbers: Sequence[int], keep: Sequence[int]) -> Chunk:
                 with limited(work.timeout, work.ends_hung_process):
                     result = work.run(generators if work.batch else generators[0], **options)
                 taken = take(result, texts[arm], len(group) if work.batch else 0)
-            except (Exception, SystemExit) as error:
-                reason, told = _sentence(error), _traceback(error)
-                chunk.failures += [Failure(arm, number, reason, told) for number in group if number in keep]
-                continue
-            except TimeReached as error:
-                reason, told = f"it took longer than timeout={work.timeout:g} s", _traceback(error)
+            except (Exception, SystemExit, TimeReached) as error:
+                is_late = isinstance(error, TimeReached)
+                reason = f"it took longer than timeout={work.timeout:g} s" if is_late else _sentence(error)
+                told = _traceback(error)
                 chunk.failures += [Failure(arm, number, reason, told) for number in group if number in keep]
                 continue
             for i, number in enumerate(group):

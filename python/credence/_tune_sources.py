@@ -23,7 +23,7 @@ from credence._record import Run
 from credence._scores import judged_score, run_score, step_scores
 from credence._trials import Array, KnownNames, Work, collected, take
 from credence._workers import Workers
-from credence.judging import Texts, Verdict, judge
+from credence.judging import Verdict, judge
 
 Values = Mapping[str, float]
 CHUNK_SECONDS = 0.1
@@ -206,7 +206,7 @@ class ScenarioSource:
         study = self._study(values, count, held_out_seed(self.seed), self.progress)
         said = report(study)
         entry = [one for one in said.json if one["arm"] == self.arm]
-        verdict = Verdict(Texts(str(said), json.dumps(entry), said.html))
+        verdict = Verdict({"text": str(said), "json": json.dumps(entry), "html": said.html})
         return verdict, judged_score(self.objective, verdict)
 
     def close(self) -> None:

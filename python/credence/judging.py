@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import functools
 import inspect
-import json
 import os
 import re
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from typing import Any, NamedTuple, ParamSpec
+from typing import Any, ParamSpec
 
 from credence import InputError, _core
 from credence import _doors as doors
-from credence._calls import errors_of_arguments, framed, progress_bar, said_of_arrays
+from credence._calls import errors_of_arguments, progress_bar, said_of_arrays
+from credence._printed import Printed
 from credence._record import Record
 
 Given = ParamSpec("Given")
@@ -27,15 +27,7 @@ def tune_hint(run: str = "run", free: str = "{...}", start: str = "") -> str:
     return f"hint: what to change in it: credence.tune({run}, free={free}{', start={' + start + '}' if start else ''})"
 
 
-class Texts(NamedTuple):
-    """What a judgement says, without what it was computed from."""
-
-    text: str
-    json: str
-    html: str
-
-
-class Verdict:
+class Verdict(Printed):
     """The verdict on a filter, with everything that it rests on.
 
     ``str(verdict)`` is the text that ``credence judge`` prints, and below it, if the filter is refuted, the call that
@@ -50,30 +42,18 @@ class Verdict:
         What ``credence judge --format json`` prints, the same bits; it has one entry, that of the record.
     """
 
-    def __init__(self, judgement: _core.Judgement | Texts) -> None:
-        self._judgement = judgement
-        self.json: list[dict[str, Any]] = json.loads(judgement.json)
+    def __init__(self, said: _core.Said | dict[str, str]) -> None:
+        super().__init__(said)
         self.verdict: str = self["verdict"]
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        return Verdict, (Texts(self._judgement.text, self._judgement.json, self._judgement.html),)
 
     def __getitem__(self, name: str) -> Any:
         return self.json[0][name]
 
     def __str__(self) -> str:
-        return self._judgement.text + (f"{tune_hint()}\n" if self.verdict in REFUTED else "")
+        return super().__str__() + (f"{tune_hint()}\n" if self.verdict in REFUTED else "")
 
     def __repr__(self) -> str:
         return f"<credence.Verdict {self.verdict}>"
-
-    def _repr_html_(self) -> str:
-        return framed(self.html)
-
-    @property
-    def html(self) -> str:
-        """The page that ``credence judge --format html`` writes; it loads nothing and runs no script."""
-        return self._judgement.html
 
     @property
     def is_consistent(self) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import shutil
 import tempfile
@@ -14,9 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 from credence import _core
 from credence import _doors as doors
-from credence._calls import errors_of_arguments, framed, note, progress_bar, said
+from credence._calls import errors_of_arguments, note, progress_bar, said
 from credence._names import not_utf8, printable
 from credence._outputs import goes_with
+from credence._printed import Printed
 from credence._results import Results, Sources
 
 if TYPE_CHECKING:
@@ -367,31 +367,10 @@ def replay(
         return open_trajectories(path)  # the open file outlives its name
 
 
-class Printed:
-    """What a command says of files as they were: ``str()`` is the text that it prints, and a notebook shows its page.
-
-    Attributes
-    ----------
-    json : list of dict
-        What the command prints with ``--format json``, the same bits.
-    """
-
-    def __init__(self, command: str, paths: Sequence[str], options: Mapping[str, object]) -> None:
-        _refuse_what_is_not_utf8(paths, options)
-        with errors_of_arguments():
-            self._said = _core.Said(command, paths, options)
-        self.json: list[dict[str, Any]] = json.loads(self._said.in_format("json"))
-
-    def __str__(self) -> str:
-        return self._said.in_format("text")
-
-    @property
-    def html(self) -> str:
-        """The page that the command writes with ``--format html``; it loads nothing and runs no script."""
-        return self._said.in_format("html")
-
-    def _repr_html_(self) -> str:
-        return framed(self.html)
+def _said(command: str, paths: Sequence[str], options: Mapping[str, object]) -> _core.Said:
+    _refuse_what_is_not_utf8(paths, options)
+    with errors_of_arguments():
+        return _core.Said(command, paths, options)
 
 
 class Report(Printed):
@@ -440,8 +419,8 @@ def report(
         failed = study.limit
     options = {"margin": margin, "margin_direction": margin_direction, "bias": bias, "failed": failed}
     if sources.records:
-        return Report("judge", list(sources.records.values()), {**options, "quiet": True})
-    return Report("report", [sources.study], options)
+        return Report(_said("judge", list(sources.records.values()), {**options, "quiet": True}))
+    return Report(_said("report", [sources.study], options))
 
 
 def _compared_records(given: Sequence[dict[str, str]], arms: str | tuple[str, str] | None) -> list[str]:
@@ -500,9 +479,9 @@ def compare(
     if of_records and len(of_records) < len(studies):
         raise _core.InputError("cannot compare records with results files. Give studies of one kind.")
     if of_records:
-        return Comparison("compare", _compared_records(of_records, arms), {"failed": failed})
+        return Comparison(_said("compare", _compared_records(of_records, arms), {"failed": failed}))
     both = arms if arms is None or isinstance(arms, str) else ",".join(arms)
-    return Comparison("compare", [one.study for one in sources], {"arms": both, "failed": failed})
+    return Comparison(_said("compare", [one.study for one in sources], {"arms": both, "failed": failed}))
 
 
 @doors.door(path_or_text=doors.paths, set=SETTINGS, sweep=doors.sweep)

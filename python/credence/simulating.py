@@ -38,7 +38,7 @@ from credence._trial_files import Trials, get_text, write_records
 from credence._trials import BATCH, Arms, Array, Failure, Frame, Work, generator, is_frame, run_chunk, same
 from credence._workers import TRIES, Workers
 from credence.judging import REFUTED, Verdict, judge, tune_hint
-from credence.program import SEED, Interrupted, Report, compare
+from credence.program import SEED, Interrupted, compare, report
 
 if TYPE_CHECKING:
     from credence.arm import Arm
@@ -372,11 +372,8 @@ class Simulation(Results):
     def sources(self) -> Sources:
         return Sources(records=self.records)
 
-    def _said(self) -> Report:
-        return Report("judge", [self._path], {"failed": self.limit, "quiet": True})
-
     def __str__(self) -> str:
-        lines = [str(self._said()).rstrip("\n")]
+        lines = [str(report(self)).rstrip("\n")]
         if self.failures:
             first = self.failures[0]
             where = f"the first: trial {first.trial} of {first.arm}"
@@ -388,7 +385,7 @@ class Simulation(Results):
         return "\n".join(lines) + "\n"
 
     def _repr_html_(self) -> str:
-        return framed(self._said().html)
+        return framed(report(self).html)
 
     def __repr__(self) -> str:
         said = ", ".join(f"{name} {verdict.verdict}" for name, verdict in self.verdicts.items())

@@ -16,8 +16,7 @@ import time
 
 import numpy as np
 import pytest
-from conftest import SCENARIO
-from test_simulate import environment, refusal
+from conftest import SCENARIO, environment, python, refusal, refused
 
 import credence
 
@@ -34,8 +33,7 @@ class Odd:
 
 
 @pytest.fixture(autouse=True)
-def _in_a_folder_of_its_own(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def _with_a_module(_in_a_folder_of_its_own):
     pathlib.Path("mine.py").write_text(textwrap.dedent("""
         import time, numpy as np, credence
         def run(rng, q=1.0, seconds=0.0):
@@ -127,12 +125,9 @@ def test_what_is_no_value_of_an_argument_is_refused_by_its_name(function, argume
     call, others = FUNCTIONS[function]
     before = sorted(os.listdir())
     for value in BAD[function][argument]:
-        with pytest.raises((credence.InputError, TypeError)) as raised:
-            call(**{**others, argument: value})
-        said = str(raised.value)
+        said = refusal(call, raises=(credence.InputError, TypeError), **{**others, argument: value})
         assert argument in said, f"{function}({argument}={value!r}): {said}"
         assert said.endswith((".", "?")), f"{function}({argument}={value!r}): {said}"
-        assert "\n" not in said, f"{function}({argument}={value!r}): {said}"
     assert sorted(os.listdir()) == before
 
 
@@ -145,9 +140,9 @@ def test_every_argument_is_in_the_table():
 def test_what_has_verdicts_of_its_own_is_not_judged():
     simulation = credence.simulate(run, 25)
     study = credence.run(SCENARIO, trials=256)
-    assert refusal(lambda: credence.judge(simulation)).endswith("Take its verdicts.")
-    assert refusal(lambda: credence.judge(simulation.arm("run"))).endswith("Take its verdict.")
-    assert refusal(lambda: credence.judge(study)).endswith("Take credence.report(study).")
+    refused("Take its verdicts.$", credence.judge, simulation)
+    refused("Take its verdict.$", credence.judge, simulation.arm("run"))
+    refused(r"Take credence.report\(study\).$", credence.judge, study)
 
 
 def test_without_the_compiled_module_files_are_read_and_drawn():
@@ -163,8 +158,7 @@ try:
 except ValueError as error:
     print(error)
 """
-    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True,
-                          env=environment(str(pathlib.Path.cwd())))  # fmt: skip
+    done = python("-c", script)
     assert done.stdout.startswith("cannot write path=missing/nees.png (there is no folder")
     assert pathlib.Path("nees.png").exists()
 
@@ -218,7 +212,7 @@ def test_a_log_whose_filter_fails_is_said():
 
 def command(*words, before="", stdout=subprocess.PIPE, **options):
     """Exit code and both streams of a command; `before` are words of a shell that come before it."""
-    here = environment(str(pathlib.Path.cwd()))
+    here = environment(pathlib.Path.cwd())
     told = ["bash", "-c", f'{before} exec "$0" -m credence "$@"', sys.executable, *words]
     done = subprocess.run(told, stdout=stdout, stderr=subprocess.PIPE, text=True, check=False, env=here, timeout=120,
                           **options)  # fmt: skip
@@ -283,7 +277,7 @@ def test_modules_that_are_missing_are_named():
 def test_memory_need_not_be_shared():
     read_only = ["unshare", "-m", "bash", "-c", 'mount -t tmpfs -o ro none /dev/shm && exec "$0" "$@"', sys.executable,
                  "-m", "credence", *SIMULATE]  # fmt: skip
-    here = {"env": environment(str(pathlib.Path.cwd())), "capture_output": True, "text": True, "timeout": 120}
+    here = {"env": environment(pathlib.Path.cwd()), "capture_output": True, "text": True, "timeout": 120}
     if subprocess.run([*read_only[:4], "mount -t tmpfs none /dev/shm"], capture_output=True, check=False).returncode:
         pytest.skip("mounts are not allowed")
     for executor in ([], ["--executor=2"]):
@@ -297,8 +291,8 @@ def test_a_signal_at_any_time_stops_simulate_with_one_line(number):
     seconds = []
     for share in (None, 0.1, 0.3, 0.5, 0.9):  # of the time that it takes
         begun = time.monotonic()
-        process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                   env=environment(str(pathlib.Path.cwd())))  # fmt: skip
+        streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True}
+        process = subprocess.Popen(words, env=environment(pathlib.Path.cwd()), **streams)
         if share is not None:
             time.sleep(share * seconds[0])
             process.send_signal(number)
@@ -315,12 +309,10 @@ def test_progress_is_said_without_tqdm():
     pathlib.Path("tqdm.py").write_text("raise ImportError('no tqdm')")
     leader, follower = pty.openpty()
     words = [*TUNE[:-1], "--trials=40"]
-    here = environment(str(pathlib.Path.cwd()))
-    done = subprocess.run([sys.executable, "-m", "credence", *words], stdout=subprocess.PIPE, stderr=follower,
-                          check=True, env=here, timeout=120)  # fmt: skip
+    done = python("-m", "credence", *words, stderr=follower, env=environment(pathlib.Path.cwd()))
     os.close(follower)
     said = os.read(leader, 2**20).decode()
     os.close(leader)
-    assert b"tuned" in done.stdout
+    assert "tuned" in done.stdout
     assert "evaluations, score " in said
     assert said.endswith("\x1b[K")

@@ -28,8 +28,8 @@ def imported_by(path: pathlib.Path) -> set[str]:
 
 def place_of(module: str, name: str) -> str:
     """Where a name is that is imported from a module: the face of the package hands on what others define."""
-    if module == "credence" and name in credence._modules:
-        return f"credence.{credence._modules[name]}"
+    if module == "credence" and name in credence._places:
+        return f"credence.{credence._places[name]}"
     within = PACKAGE.joinpath(*module.split(".")[1:], name)
     return f"{module}.{name}" if within.with_suffix(".py").exists() or name == "_core" else module
 

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import html
+import inspect
 import json
 import math
 import pathlib
-import subprocess
-import sys
-import textwrap
+import re
 
 import h5py
 import numpy as np
 import pytest
 import records
+from conftest import python, refusal, refused
 from scipy import stats
 
 import credence
@@ -43,14 +44,7 @@ def test_the_page_is_that_of_the_program(tmp_path, program):
     path = records.write(tmp_path / "joint.h5", CORPUS["joint"])
     verdict = credence.judge(**CORPUS["joint"], name=str(path))
     assert verdict.html == program("judge", path, "--format", "html", "--quiet")[1]
-    assert (
-        verdict.html.replace("&", "&amp;")
-        .replace('"', "&quot;")
-        .replace("<", "&lt;")
-        .replace(">", "&gt;")
-        .replace("'", "&#x27;")
-        in verdict._repr_html_()
-    )
+    assert html.escape(verdict.html) in verdict._repr_html_()
 
 
 def test_margins_are_those_of_the_program(tmp_path, program):
@@ -102,48 +96,47 @@ def test_no_copy_of_the_arrays_is_made():
         credence.judge(error, covariance)
         print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
     """
-    done = subprocess.run([sys.executable, "-c", textwrap.dedent(script)], capture_output=True, text=True, check=True)
-    assert int(done.stdout) < 150_000  # kB; what is kept of NEES and errors takes up to 100 MB
+    assert int(python("-c", script).stdout) < 150_000  # kB; what is kept of NEES and errors takes up to 100 MB
 
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
         ({"covariance": np.zeros((3, 2, 2, 3))}, "covariance: does not fit: it is [3, 2, 2, 3] and error [3, 2, 2]."),
-        (
-            {"covariance": np.array([[[[1, 0.5], [0, 1]]] * 2] * 3)},
-            "covariance: trial 0, step 0 (both counted from 0) is not",
-        ),
-        (
-            {"covariance": np.ones((3, 2, 2, 2)), "groups": {"pose": [0, 2]}},
-            "groups: `pose 0 2` goes beyond the 2 components",
-        ),
-        ({"covariance": np.ones((3, 2, 2, 2)), "margin": 2}, "invalid margin=2 (must be between 0 and 100 %"),
-        (
-            {"covariance": np.ones((3, 2, 2, 2)), "margin_direction": 0.01},
-            "invalid margin_direction=0.01 (less than the margin",
-        ),
-        (
-            {"covariance": np.ones((3, 2, 2, 2)), "segments": 1.5},
-            "invalid segments=1.5 (must be a whole number of steps from 2 on, auto or off). Write 50.",
-        ),
-        (
-            {"covariance": np.ones((3, 2, 2, 2)), "innovation": np.ones((3, 2, 1))},
-            "innovation_covariance: is missing, but",
-        ),
-        ({}, "covariance: is missing."),
+        ({"covariance": np.tile([[1, 0.5], [0, 1]], (3, 2, 1, 1))}, "covariance: trial 0, step 0 (both counted"),
+        ({"groups": {"pose": [0, 2]}}, "groups: `pose 0 2` goes beyond the 2 components"),
+        ({"margin": 2}, "invalid margin=2 (must be between 0 and 100 %"),
+        ({"margin_direction": 0.01}, "invalid margin_direction=0.01 (less than the margin"),
+        ({"segments": 1.5}, "invalid segments=1.5 (must be a whole number of steps from 2 on, auto or off). Write 50."),
+        ({"innovation": np.ones((3, 2, 1))}, "innovation_covariance: is missing, but"),
+        ({"covariance": None}, "covariance: is missing."),
     ],
 )
 def test_what_does_not_fit_is_refused(arguments, message):
-    with pytest.raises(credence.InputError) as refused:
-        credence.judge(np.zeros((3, 2, 2)), **arguments)
-    assert str(refused.value).startswith(message)
-    assert isinstance(refused.value, ValueError)
+    assert issubclass(credence.InputError, ValueError)
+    given = {"covariance": np.ones((3, 2, 2, 2)), **arguments}
+    assert refusal(credence.judge, np.zeros((3, 2, 2)), **given).startswith(message)
+
+
+def test_a_record_is_judged_as_its_fields_are():
+    record = credence.Record(**CORPUS["groups"])
+    assert credence.judge(record, margin=0.2).json == credence.judge(**CORPUS["groups"], margin=0.2).json
+    assert repr(record) == "<credence.Record of error, covariance, groups>"
+    refused("Give it alone", credence.judge, record, groups="pose 0", raises=TypeError)
+    fields = inspect.signature(credence.Record).parameters
+    for taken in (credence.judge, credence.Run):
+        assert fields.items() <= dict(inspect.signature(taken).parameters).items()
+        assert inspect.signature(taken).parameters.keys() - fields.keys() <= {
+            "runs", "margin", "margin_direction", "bias", "failed", "segments", "name", "progress"}
+    said = credence.judge.__doc__
+    assert [name for name in inspect.signature(credence.judge).parameters if not re.search(rf"\b{name}\b", said)] == []
+    assert "array [trial, step, n]" in said
+    with pytest.raises(TypeError, match=r"^judge\(\) got an unexpected keyword argument 'marign'"):
+        credence.judge(record, marign=0.2)
 
 
 def test_a_path_stands_alone():
-    with pytest.raises(TypeError, match="Give it alone"):
-        credence.judge("record.h5", np.zeros((1, 1, 1)))
+    refused("Give it alone", credence.judge, "record.h5", np.zeros((1, 1, 1)), raises=TypeError)
 
 
 def test_assert_consistent_says_why():
@@ -273,8 +266,7 @@ def test_records_of_other_runs_are_not_compared(tmp_path):
         (record("later.h5", truth, time + 0.5), "/time: differs from that of the first record in entry 0"),
         (record("short.h5", truth[:, :20], time[:20]), r"/estimate: is \[60, 20, 2\], not \[60, 30, 2\]"),
     ):
-        with pytest.raises(credence.InputError, match=said):
-            credence.compare(first, other)
+        refused(said, credence.compare, first, other)
 
 
 def test_what_cancels_over_all_steps_is_found_in_its_tenths():

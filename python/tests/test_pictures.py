@@ -13,6 +13,7 @@ import warnings
 import numpy as np
 import pytest
 import studies
+from conftest import refused
 
 import credence
 from credence.pictures import style, trials, verdicts
@@ -103,8 +104,7 @@ CASES = [(kind, *size) for kind in OF_SCENARIO for size in SIZES]
 def test_every_kind_is_drawn_with_any_number_of_arms(kind, count, width):
     options = {"credence": studies.CREDENCE} if kind in ("verdicts", "map", "place") else {}
     if count == 1 and kind == "paired":
-        with pytest.raises(ValueError, match="no arm has that of a simpler controller"):
-            credence.plot(MAKERS[count](), kind)
+        refused("no arm has that of a simpler controller", credence.plot, MAKERS[count](), kind, raises=ValueError)
         return
     picture = drawn(MAKERS[count](), kind, width=width, **options)
     assert picture.get_figwidth() * 25.4 == pytest.approx(width)
@@ -342,8 +342,7 @@ def test_a_trial_moves(tmp_path, monkeypatch):
     assert credence.animate(trajectory).name == "ekf-circle-ranged-greedy.ekf.gif"
     again = credence.animate(trajectory, path=tmp_path / "again.gif")
     assert again.read_bytes() == path.read_bytes()
-    with pytest.raises(ValueError, match="must end in"):
-        credence.animate(trajectory, path=tmp_path / "trial.png")
+    refused("must end in", credence.animate, trajectory, path=tmp_path / "trial.png", raises=ValueError)
 
 
 def test_a_film_says_how_far_it_is(tmp_path, capsys):
@@ -375,8 +374,7 @@ def test_a_film_needs_ffmpeg(tmp_path, monkeypatch):
         film = credence.animate(studies.trajectory(), path=tmp_path / "trial.mp4")
         assert film.read_bytes()[4:8] == b"ftyp"
     monkeypatch.setattr(shutil, "which", lambda name: None)
-    with pytest.raises(ValueError, match="there is no ffmpeg"):
-        credence.animate(studies.trajectory(), path=tmp_path / "none.mp4")
+    refused("there is no ffmpeg", credence.animate, studies.trajectory(), path=tmp_path / "none.mp4", raises=ValueError)
 
 
 def given(*words):

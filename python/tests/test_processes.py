@@ -8,12 +8,11 @@ import pathlib
 import pickle
 import re
 import subprocess
-import sys
 import textwrap
 
 import numpy as np
 import pytest
-from conftest import SCENARIO
+from conftest import SCENARIO, python, refused
 
 import credence
 
@@ -46,14 +45,7 @@ def wait_for(path):
 
 def process(script):
     """Exit code of a Python process, and what it printed on both streams; a process that hangs fails the test."""
-    done = subprocess.run(
-        [sys.executable, "-c", PREAMBLE + textwrap.dedent(script)],
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        check=False,
-        timeout=120,
-    )
+    done = python("-c", PREAMBLE + textwrap.dedent(script), stderr=subprocess.STDOUT)
     return done.returncode, done.stdout
 
 
@@ -65,8 +57,7 @@ def refusal(call):
 
 
 @pytest.fixture(autouse=True)
-def _in_a_folder_of_its_own(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def _with_temporary_files_of_its_own(tmp_path, monkeypatch):
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr("tempfile.tempdir", None)
 
@@ -336,6 +327,5 @@ def test_what_python_calls_at_its_end_may_call_credence_and_fork():
 
 def test_a_run_does_not_replace_its_own_scenario():
     pathlib.Path("own.ini").write_text(SCENARIO)
-    with pytest.raises(credence.InputError, match=r"it would replace own\.ini, which is read"):
-        credence.run("own.ini", output="own.ini", overwrite=True)
+    refused(r"it would replace own\.ini, which is read", credence.run, "own.ini", output="own.ini", overwrite=True)
     assert pathlib.Path("own.ini").read_text() == SCENARIO

@@ -14,9 +14,6 @@ import pathlib
 import re
 import signal
 import subprocess
-import sys
-import textwrap
-import time
 import warnings
 
 import filters
@@ -24,6 +21,7 @@ import h5py
 import numpy as np
 import pytest
 import records
+from conftest import python, refusal, refused, started
 from scipy import stats
 
 import credence
@@ -33,12 +31,6 @@ PAGE = pathlib.Path(__file__).parents[2] / "docs" / "python.md"
 ARMS = {"right": {}, "calm": {"scale": 0.5}}
 ARMS_OF_SLOW = {"right": {}, "calm": {}}
 FLIPS = int(os.environ.get("CREDENCE_FLIPS", "60"))
-PATIENCE = 60  # s, after which a process that should have ended is hung
-
-
-@pytest.fixture(autouse=True)
-def _in_a_folder_of_its_own(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
 
 
 def is_same(first, second):
@@ -46,38 +38,13 @@ def is_same(first, second):
     return filecmp.cmp(f"{first}.h5", f"{second}.h5", shallow=False)
 
 
-def refusal(call, kind=credence.InputError):
-    with pytest.raises(kind) as raised:
-        call()
-    said = str(raised.value)
-    assert "\n" not in said
-    return said
-
-
-def in_process(script, *, wait_for=None, then=None):
-    """Run a script in a process, and send it a signal as soon as a file is there and grows; what it printed."""
-    words = [sys.executable, "-c", "import credence, filters\n" + textwrap.dedent(script)]
-    path = str(pathlib.Path(__file__).parent)
-    process = subprocess.Popen(
-        words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, env=environment(path)
-    )
-    try:
-        if wait_for is not None:
-            end = time.monotonic() + PATIENCE
-            while not (pathlib.Path(wait_for).exists() and pathlib.Path(wait_for).stat().st_size > 2000):
-                assert time.monotonic() < end
-                assert process.poll() is None, process.communicate()
-                time.sleep(0.005)
-            process.send_signal(then)
-        said = process.communicate(timeout=PATIENCE)[0]
-    finally:
-        process.kill()
-        process.wait()
-    return process.returncode, said
-
-
-def environment(path):
-    return {**os.environ, "PYTHONPATH": os.pathsep.join([path, *filter(None, [os.environ.get("PYTHONPATH")])])}
+def stopped(script, number, output):
+    """Send a signal to a process that runs a script as soon as it has kept trials; its code and what it printed."""
+    kept = f"{output}.trials"
+    streams = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
+    with started("-c", script, wait_for=kept, least=2000, **streams) as process:
+        process.send_signal(number)
+        return process.communicate(timeout=60)[0], process.returncode
 
 
 # What the numbers are.
@@ -175,23 +142,15 @@ def test_a_study_grows_to_the_same_bits():
 
 
 def test_a_torn_tail_is_cut():
-    credence.simulate(filters.slow, trials=60, arms={"right": {}, "calm": {}}, output="whole.h5")
+    credence.simulate(filters.slow, trials=60, arms=ARMS_OF_SLOW, output="whole.h5")
     kept = pathlib.Path("whole.h5.trials").read_bytes()
     cuts = np.random.default_rng(6).integers(1, len(kept), 6)
     for cut in cuts.tolist():
         pathlib.Path("torn.h5.trials").write_bytes(kept[:cut])
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            credence.simulate(filters.slow, trials=60, arms={"right": {}, "calm": {}}, output="torn.h5", resume=True)
+            credence.simulate(filters.slow, trials=60, arms=ARMS_OF_SLOW, output="torn.h5", resume=True)
         assert is_same("whole", "torn")
-    changed = bytearray(kept)
-    changed[len(kept) // 2] ^= 1
-    pathlib.Path("torn.h5.trials").write_bytes(changed)
-    with pytest.warns(
-        UserWarning, match=r"\d+ bytes in the middle of it are damaged; the trials that were there run again"
-    ):
-        credence.simulate(filters.slow, trials=60, arms={"right": {}, "calm": {}}, output="torn.h5", resume=True)
-    assert is_same("whole", "torn")
 
 
 @pytest.mark.parametrize("place", [0, 8, 16, 30, 400])
@@ -243,13 +202,8 @@ def test_a_byte_that_changed_gives_no_wrong_number(arms, program):
     """Of the whole record, its metadata too: what it says is the same, or it is refused."""
 
     def run(rng, scale=1.0):
-        made = filters.drawn(
-            rng,
-            scale,
-            innovation=rng.standard_normal((4, 2)),
-            groups={"a": [0]},
-            innovation_covariance=np.broadcast_to(np.eye(2), (4, 2, 2)),
-        )
+        more = {"innovation": rng.standard_normal((4, 2)), "groups": {"a": [0]}}
+        made = filters.drawn(rng, scale, innovation_covariance=np.broadcast_to(np.eye(2), (4, 2, 2)), **more)
         if made.columns["rmse"] > 1.4:
             raise ValueError("x")
         return made
@@ -280,7 +234,7 @@ def test_a_study_that_was_killed_before_trial_0_was_kept_is_of_one_function():
     for name in ("other.h5", "same.h5"):
         pathlib.Path(f"{name}.trials").write_bytes(without)
     given = {"trials": 60, "arms": {"right": {}}, "resume": True}
-    said = refusal(lambda: credence.simulate(lambda rng: filters.drawn(rng, 2), output="other.h5", **given))
+    said = refusal(credence.simulate, lambda rng: filters.drawn(rng, 2), output="other.h5", **given)
     assert "trial 1 of right gives other numbers than those that are kept" in said
     assert not pathlib.Path("other.h5").exists()
     credence.simulate(filters.slow, output="same.h5", **given)
@@ -313,30 +267,29 @@ def test_options_are_compared_by_their_values():
     for one, other in options:
         study(**one)
         study(resume=True, **copy.deepcopy(one))
-        assert "kept.h5.trials: its trials have arms=" in refusal(lambda other=other: study(resume=True, **other))
+        assert "kept.h5.trials: its trials have arms=" in refusal(study, resume=True, **other)
         for path in pathlib.Path().iterdir():
             path.unlink()
     within = []
     within.append(within)
-    assert "an option contains itself" in refusal(lambda: study(Q=within))
+    assert "an option contains itself" in refusal(study, Q=within)
 
 
 def test_resuming_replaces_the_record_of_its_own_trials_alone():
     def study(output="mine.h5", **more):
-        return lambda: credence.simulate(filters.drawn, trials=30, **{"output": output, "resume": True, **more})
+        return credence.simulate(filters.drawn, trials=30, **{"output": output, "resume": True, **more})
 
     pathlib.Path("mine.h5").write_bytes(b"results of a week")
-    assert re.search(r"cannot resume mine.h5 \(its trials are not beside it, in mine.h5.trials\)", refusal(study()))
-    assert re.search(r"mine.h5 \(it is there already\). Name another\.$", refusal(study(resume=False)))
+    refused(r"cannot resume mine.h5 \(its trials are not beside it, in mine.h5.trials\)", study)
+    refused(r"mine.h5 \(it is there already\). Name another\.$", study, resume=False)
     assert [path.name for path in pathlib.Path().iterdir()] == ["mine.h5"]
     pathlib.Path("mine.h5").rename("week.h5")
-    study()()
-    assert re.search(r"Name another, or say resume=True", refusal(study(resume=False)))
+    study()
+    refused(r"Name another, or say resume=True", study, resume=False)
     for other in (b"results of a week", pathlib.Path("mine.h5").read_bytes()):
         credence.simulate(filters.drawn, trials=30, seed=2, output="two.h5")
         pathlib.Path("two.h5").write_bytes(other)
-        said = refusal(study("two.h5", seed=2))
-        assert re.search(r"two.h5 \(it is no record of the trials in two.h5.trials\)", said)
+        refused(r"two.h5 \(it is no record of the trials in two.h5.trials\)", study, "two.h5", seed=2)
         assert pathlib.Path("two.h5").read_bytes() == other
         for name in ("two.h5", "two.h5.trials"):
             pathlib.Path(name).unlink()
@@ -367,12 +320,8 @@ def test_covariances_that_are_the_same_in_all_trials_take_little_room():
     steps, m = 60, 28
 
     def run(rng):
-        return filters.drawn(
-            rng,
-            steps=steps,
-            innovation=rng.standard_normal((steps, m)),
-            innovation_covariance=np.broadcast_to(S, (steps, m, m)),
-        )
+        innovation = {"innovation": rng.standard_normal((steps, m))}
+        return filters.drawn(rng, steps=steps, innovation_covariance=np.broadcast_to(S, (steps, m, m)), **innovation)
 
     root = np.random.default_rng(1).standard_normal((m, m))
     S = root @ root.T + np.eye(m)
@@ -384,72 +333,54 @@ def test_covariances_that_are_the_same_in_all_trials_take_little_room():
 
 
 @pytest.mark.parametrize("executor", [None, 2])
-def test_ctrl_c_keeps_what_is_done(executor):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_a_process_that_is_stopped_or_killed_has_kept_what_was_done(executor, number):
     script = f"""
+        import credence, filters
         try:
             credence.simulate(filters.slow, trials=4000, output="stopped.h5", executor={executor})
         except credence.Interrupted as stopped:
             print(stopped)
             print(stopped.study.trials, stopped.study.arm("run").read("error").shape)
     """
-    code, said = in_process(script, wait_for="stopped.h5.trials", then=signal.SIGINT)
-    assert code == 0, said
-    done = int(re.search(r"stopped with (\d+) of 4000 trials done; .*stopped.h5.trials has them", said)[1])
-    assert 0 < done < 4000
-    assert f"{done} ({done}, 4, 2)" in said
-    credence.simulate(filters.drawn, trials=done + 300, output="stopped.h5", resume=True)
-    credence.simulate(filters.drawn, trials=done + 300, output="whole.h5")
-    assert filecmp.cmp("stopped.h5", "whole.h5", shallow=False)
-
-
-@pytest.mark.parametrize("executor", [None, 2])
-def test_a_process_that_is_killed_has_kept_what_was_done(executor):
-    script = f"credence.simulate(filters.slow, trials=4000, output='killed.h5', executor={executor})"
-    code, said = in_process(script, wait_for="killed.h5.trials", then=signal.SIGKILL)
-    assert code == -signal.SIGKILL, said
-    size = pathlib.Path("killed.h5.trials").stat().st_size
+    said, code = stopped(script, number, "stopped.h5")
+    assert code == (0 if number == signal.SIGINT else -number), said
+    trials = 300
+    if number == signal.SIGINT:
+        done = int(re.search(r"stopped with (\d+) of 4000 trials done; .*stopped.h5.trials has them", said)[1])
+        assert 0 < done < 4000
+        assert f"{done} ({done}, 4, 2)" in said
+        trials += done
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        credence.simulate(filters.drawn, trials=300, output="killed.h5", resume=True)
-    assert size > 2000
-    credence.simulate(filters.drawn, trials=300, output="whole.h5")
-    assert filecmp.cmp("killed.h5", "whole.h5", shallow=False)
+        credence.simulate(filters.drawn, trials=trials, output="stopped.h5", resume=True)
+    credence.simulate(filters.drawn, trials=trials, output="whole.h5")
+    assert is_same("stopped", "whole")
 
 
 def test_only_the_same_trials_are_taken():
     credence.simulate(filters.drawn, trials=20, arms=ARMS, output="kept.h5")
 
     def again(run=filters.drawn, trials=30, arms=ARMS, **more):
-        return lambda: credence.simulate(run, trials=trials, arms=arms, output="kept.h5", **{"resume": True, **more})
+        return credence.simulate(run, trials=trials, arms=arms, output="kept.h5", **{"resume": True, **more})
 
-    assert re.search(r"kept.h5.trials: its trials have seed=1, not 2. Give the same", refusal(again(seed=2)))
-    assert re.search(r"its trials have arms=", refusal(again(arms={"right": {}, "calm": {"scale": 0.4}})))
-    assert re.search(r"its trials have batch=0, not 256", refusal(again(filters.many, batch=True)))
-    assert re.search(r"until: the trials have no number speed. Take one of rmse", refusal(again(until={"speed": 1})))
-    changed = refusal(again(lambda rng, scale=1: filters.drawn(rng, scale * 1.0000001)))
-    assert re.search(r"trial 0 of right gives other numbers than those that are kept. Take the function", changed)
-    assert re.search(
-        r"cannot write .*kept.h5.trials \(it is there already\). Name another, or say resume=True",
-        refusal(again(resume=False)),
-    )
+    refused(r"kept.h5.trials: its trials have seed=1, not 2. Give the same", again, seed=2)
+    refused(r"its trials have arms=", again, arms={"right": {}, "calm": {"scale": 0.4}})
+    refused(r"its trials have batch=0, not 256", again, filters.many, batch=True)
+    refused(r"until: the trials have no number speed. Take one of rmse", again, until={"speed": 1})
+    refused(r"trial 0 of right gives other numbers than those that are kept. Take the function", again,
+            lambda rng, scale=1: filters.drawn(rng, scale * 1.0000001))  # fmt: skip
+    refused(r"cannot write .*kept.h5.trials \(it is there already\). Name another, or say resume=True", again,
+            resume=False)  # fmt: skip
     pathlib.Path("kept.h5.trials").write_bytes(b"something else, and longer than a header")
-    assert "is no file of simulated trials" in refusal(again())
+    refused("is no file of simulated trials", again)
 
 
 def test_two_studies_do_not_add_to_one_file():
-    script = "credence.simulate(filters.slow, trials=100000, output='busy.h5')"
-    words = [sys.executable, "-c", f"import credence, filters; {script}"]
-    process = subprocess.Popen(words, env=environment(str(pathlib.Path(__file__).parent)))
-    try:
-        end = time.monotonic() + PATIENCE
-        trials = pathlib.Path("busy.h5.trials")  # it is locked before its first byte is written
-        while not (trials.exists() and trials.stat().st_size > 0) and time.monotonic() < end:
-            time.sleep(0.01)
-        said = refusal(lambda: credence.simulate(filters.slow, trials=10, output="busy.h5", resume=True))
-        assert "another process adds trials to it" in said
-    finally:
-        process.kill()
-        process.wait()
+    script = "import credence, filters; credence.simulate(filters.slow, trials=100000, output='busy.h5')"
+    with started("-c", script, wait_for="busy.h5.trials"):  # it is locked before its first byte is written
+        refused("another process adds trials to it", credence.simulate, filters.slow, trials=10, output="busy.h5",
+                resume=True)  # fmt: skip
 
 
 def test_temporary_files_go_with_the_simulation(tmp_path, monkeypatch):
@@ -482,9 +413,7 @@ def test_trials_that_go_wrong_are_failed_and_nothing_is_lost(executor, hang):
     assert reasons[9] == shape
     assert reasons[11].startswith("it is of another form than the first run: it has 2 steps, and trial 0 has 4; Run(")
     assert reasons[13] == "TypeError: the function returned ndarray, not a credence.Run"
-    assert reasons[15] == (
-        "InputError: covariance: is [4, 3, 3], and error has 2 components. Give arrays that fit each other."
-    )
+    assert reasons[15].startswith("InputError: covariance: is [4, 3, 3], and error has 2 components. Give arrays")
     assert "raise ValueError" in study.failures[0].traceback
     assert "_trials.py" not in study.failures[0].traceback
     assert study.verdicts["kf"]["failed_trials"] == 7  # and trial 7, whose numbers are NaN
@@ -624,17 +553,14 @@ def test_what_cannot_be_judged_is_refused_at_trial_0(run, said):
         calls.append(1)
         return run(rng)
 
-    assert refusal(lambda: credence.simulate(counted, trials=1000)).startswith(said)
+    assert refusal(credence.simulate, counted, trials=1000).startswith(said)
     assert len(calls) == 2
 
 
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        (
-            {"trials": 0},
-            "invalid trials=0 (must be a whole number from 1 to 9007199254740992). Give one in that range.",
-        ),
+        ({"trials": 0}, "invalid trials=0 (must be a whole number from 1 to 9007199254740992). Give one in that range"),
         ({"trials": 2.5}, "invalid trials=2.5 "),
         ({"seed": -1}, "invalid seed=-1 "),
         ({"seed": 2**64}, f"invalid seed={2**64} "),
@@ -655,24 +581,22 @@ def test_what_cannot_be_judged_is_refused_at_trial_0(run, said):
     ],
 )
 def test_bad_input_is_refused(given, said):
-    assert refusal(lambda: credence.simulate(filters.drawn, **{"trials": 300, **given})).startswith(said)
+    assert refusal(credence.simulate, filters.drawn, **{"trials": 300, **given}).startswith(said)
     assert list(pathlib.Path.cwd().iterdir()) == []
 
 
 def test_a_run_says_what_does_not_fit():
-    def said(*given, **named):
-        with pytest.raises(credence.Failure) as raised:
-            credence.simulate(lambda rng: credence.Run(*given, **named), trials=1)
-        return str(raised.value).splitlines()[0]
-
-    assert "covariance: is [3, 2, 2], and error is [4, 2]. Give the same steps" in said(
-        np.ones((4, 2)), np.ones((3, 2, 2))
-    )
-    assert "error: is [4], and has 1 dimensions in place of 2" in said(np.ones(4), np.ones((4, 2, 2)))
-    assert "a Run has neither error, nor truth" in said(None, np.ones((4, 2, 2)))
-    assert "error is an array of <U1, which does not hold numbers" in said([["a"]], np.ones((1, 1, 1)))
-    assert "steps: is not a whole number from 1 to 4" in said(np.ones((4, 2)), np.ones((4, 2)), steps=5)
-    assert "column/a: is no number of a trial" in said(np.ones((4, 2)), np.ones((4, 2)), columns={"a": [1, 2]})
+    error, P = np.ones((4, 2)), np.ones((4, 2, 2))
+    for given, more, said in [
+        ((error, P[:3]), {}, r"covariance: is \[3, 2, 2\], and error is \[4, 2\]. Give the same steps"),
+        ((error[:, 0], P), {}, r"error: is \[4\], and has 1 dimensions in place of 2"),
+        ((None, P), {}, "a Run has neither error, nor truth"),
+        (([["a"]], P[:1, :1, :1]), {}, "error is an array of <U1, which does not hold numbers"),
+        ((error, error), {"steps": 5}, "steps: is not a whole number from 1 to 4"),
+        ((error, error), {"columns": {"a": [1, 2]}}, "column/a: is no number of a trial"),
+    ]:
+        with pytest.raises(credence.Failure, match=said):
+            credence.simulate(lambda rng, given=given, more=more: credence.Run(*given, **more), trials=1)
 
 
 def test_a_run_is_made_of_a_record_of_one_trial():
@@ -683,7 +607,7 @@ def test_a_run_is_made_of_a_record_of_one_trial():
     assert run.arrays["time"].shape == (records.STEPS,)
     assert run.texts == {name: given[name] for name in ("component_names", "component_units")}
     assert run.steps is None
-    assert "error: has 40 trials. Give one" in refusal(lambda: credence.Run.of_record(given))
+    assert "error: has 40 trials. Give one" in refusal(credence.Run.of_record, given)
 
 
 # Copies.
@@ -694,9 +618,9 @@ def test_a_function_that_does_not_use_its_generator_is_refused(executor):
     def fixed(rng):
         return filters.drawn(np.random.default_rng(1))
 
-    said = refusal(lambda: credence.simulate(fixed, trials=300, executor=executor))
+    said = refusal(credence.simulate, fixed, trials=300, executor=executor)
     assert said.startswith("the first 20 trials of run have the same errors, to the last bit: the function does not us")
-    assert "the first 2 trials of" in refusal(lambda: credence.simulate(fixed, trials=2))
+    assert "the first 2 trials of" in refusal(credence.simulate, fixed, trials=2)
     assert credence.simulate(fixed, trials=1).failures == []
 
     def of_one_number(rng):
@@ -792,10 +716,7 @@ def test_nees_that_is_followed_is_that_of_the_verdict():
 
 def test_a_simulation_says_its_verdicts_and_compares_its_arms(program):
     study = credence.simulate(filters.drawn, trials=2000, arms=ARMS, output="mine.h5")
-    assert {name: verdict.verdict for name, verdict in study.verdicts.items()} == {
-        "right": "consistent",
-        "calm": "optimistic",
-    }
+    assert [verdict.verdict for verdict in study.verdicts.values()] == ["consistent", "optimistic"]
     assert sorted(path.name for path in pathlib.Path().iterdir()) == ["mine.h5", "mine.h5.trials"]
     code, said, _ = program("judge", "mine.h5", "--quiet")
     assert code == 0
@@ -818,13 +739,11 @@ def test_a_simulation_says_its_verdicts_and_compares_its_arms(program):
     assert said.splitlines()[1:] == program("judge", study.arm("calm").path, "--quiet")[1].splitlines()[1:]
     assert "mine/calm" in said
     assert credence.judge("mine.h5:calm")["verdict"] == study.verdicts["calm"].verdict
-    several = refusal(lambda: credence.judge("mine.h5"))
-    assert several == "mine.h5: /: holds several arms. Name one as mine.h5:right or mine.h5:calm."
-    assert "has no arm fast" in refusal(lambda: credence.judge("mine.h5:fast"))
+    refused("^mine.h5: /: holds several arms. Name one as mine.h5:right or mine.h5:calm.$", credence.judge, "mine.h5")
+    assert "has no arm fast" in refusal(credence.judge, "mine.h5:fast")
     code, _, said = program("judge", "mine.h5:calm", "-o", "mine.h5", "--overwrite")
     assert (code, "which is read" in said) == (2, True)
-    with pytest.raises(KeyError, match=r"no arm fast\. It has right, calm"):
-        study.arm("fast")
+    refused(r"no arm fast\. It has right, calm", study.arm, "fast", raises=KeyError)
     with pytest.raises(KeyError, match=r"calm has no nothing\. It has column/rmse, covariance, error, trial"):
         study.arm("calm").read("nothing")
     assert study.arm("right").judge(margin=0.5).verdict == "consistent"
@@ -840,7 +759,7 @@ def test_progress_shows_the_rate_and_nees(capfd):
 
 def test_without_h5py_it_says_so(monkeypatch):
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
-    said = refusal(lambda: credence.simulate(filters.drawn, trials=3))
+    said = refusal(credence.simulate, filters.drawn, trials=3)
     assert said == "h5py is not installed (trials are kept in HDF5 files). Install it: pip install h5py."
 
 
@@ -848,37 +767,32 @@ def test_without_h5py_it_says_so(monkeypatch):
 
 
 def command(*words):
-    environment_here = environment(str(pathlib.Path(__file__).parent))
-    words = [sys.executable, "-m", "credence", "simulate", *words]
-    done = subprocess.run(words, capture_output=True, text=True, check=False, env=environment_here, timeout=PATIENCE)
+    done = python("-m", "credence", "simulate", *words)
     return done.returncode, done.stdout, done.stderr
 
 
 def test_the_command_says_what_the_function_says():
-    pathlib.Path("mine.py").write_text(
-        "import filters\ndef run(rng, scale=1.0):\n    return filters.drawn(rng, scale)\n"
-    )
     arms = ["--arm", "right", "--arm", "calm", "scale=0.5"]
-    code, said, err = command("mine:run", "--trials", "2e2", *arms, "--executor", "2", "-o", "a.h5")
+    code, said, err = command("filters:drawn", "--trials", "2e2", *arms, "--executor", "2", "-o", "a.h5")
     assert (code, err) == (0, "")
     study = credence.simulate(filters.drawn, trials=200, arms=ARMS, output="b.h5")
     assert is_same("a", "b")
     assert said.splitlines()[1:3] == str(study).splitlines()[1:3]
-    grown = command("mine:run", "--trials=300", *arms, "-o", "a.h5", "--resume", "--require", "no-finding")
+    grown = command("filters:drawn", "--trials=300", *arms, "-o", "a.h5", "--resume", "--require", "no-finding")
     assert grown[0] == 1  # the calm filter is refuted
-    assert command("mine:run", "--trials=2000", "--until", "rmse=5%", "--batch", "--quiet")[0] == 1
-    assert command("mine:run", "--trials=300", "--require", "no-finding")[0] == 0
+    assert command("filters:drawn", "--trials=2000", "--until", "rmse=5%", "--batch", "--quiet")[0] == 1
+    assert command("filters:drawn", "--trials=300", "--require", "no-finding")[0] == 0
 
 
 def test_the_command_refuses_bad_input():
-    pathlib.Path("mine.py").write_text("import filters\nrun = filters.drawn\n")
+    run = "filters:drawn"
     for words, expected in [
         (["mine.run"], "invalid function mine.run (must be MODULE:FUNCTION)"),
         (["nothing_here:run"], "nothing_here:run: cannot be imported (No module named 'nothing_here')"),
-        (["mine:walk"], "mine:walk: the module has no walk"),
-        (["mine:run", "--executor", "slurm"], "invalid executor slurm (must be a number, dask, dask:ADDRESS or mpi)"),
-        (["mine:run", "--arm", "calm", "0.5"], "invalid option 0.5 of the arm calm (must be NAME=VALUE)"),
-        (["mine:run", "--resume"], "cannot resume (there is no output)"),
+        (["filters:walk"], "filters:walk: the module has no walk"),
+        ([run, "--executor", "slurm"], "invalid executor slurm (must be a number, dask, dask:ADDRESS or mpi)"),
+        ([run, "--arm", "calm", "0.5"], "invalid option 0.5 of the arm calm (must be NAME=VALUE)"),
+        ([run, "--resume"], "cannot resume (there is no output)"),
     ]:
         code, said, err = command(*words, "--trials=30")
         assert (code, said) == (2, "")
@@ -887,20 +801,10 @@ def test_the_command_refuses_bad_input():
 
 
 def test_a_batch_systems_signal_keeps_what_is_done():
-    pathlib.Path("mine.py").write_text("import filters\nrun = filters.slow\n")
-    words = [sys.executable, "-m", "credence", "simulate", "mine:run", "--trials=100000", "-o", "a.h5"]
-    here = environment(str(pathlib.Path(__file__).parent))
-    process = subprocess.Popen(words, stderr=subprocess.PIPE, text=True, env=here)
-    try:
-        end = time.monotonic() + PATIENCE
-        while not (pathlib.Path("a.h5.trials").exists() and pathlib.Path("a.h5.trials").stat().st_size > 2000):
-            assert time.monotonic() < end
-            time.sleep(0.01)
+    words = ["-m", "credence", "simulate", "filters:slow", "--trials=100000", "-o", "a.h5"]
+    with started(*words, wait_for="a.h5.trials", least=2000, stderr=subprocess.PIPE) as process:
         process.terminate()
-        err = process.communicate(timeout=PATIENCE)[1]
-    finally:
-        process.kill()
-        process.wait()
+        err = process.communicate(timeout=60)[1]
     assert process.returncode == 3
     assert re.search(r"credence simulate: the simulation was stopped with \d+ of 100000 trials done; .*--resume", err)
 
@@ -912,7 +816,8 @@ def test_the_example_of_the_page_comes_to_its_verdicts():
     block = re.search(r"```python\n(# tracker.py\n.+?)```", PAGE.read_text(), re.DOTALL)
     assert block is not None
     pathlib.Path("tracker.py").write_text(block[1])
-    done = subprocess.run([sys.executable, "tracker.py"], capture_output=True, text=True, check=True, timeout=PATIENCE)
+    done = python("tracker.py")
+    assert done.returncode == 0, done.stderr
     said = dict(re.findall(r"^ +tracker/(\w+) +(\w+)", done.stdout, re.MULTILINE))
     assert said == {"right": "consistent", "calm": "optimistic"}
     assert "calm - right, trial by trial" in done.stdout

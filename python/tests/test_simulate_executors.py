@@ -11,7 +11,6 @@ import contextlib
 import filecmp
 import multiprocessing
 import os
-import pathlib
 import random
 import shutil
 import signal
@@ -22,13 +21,14 @@ import time
 
 import filters
 import pytest
+from conftest import HERE, SCENARIO, environment, refused
 
 import credence
 
 ARMS = {"right": {}, "calm": {"scale": 0.5}}
-HERE = pathlib.Path(__file__).parent
 MPIRUN = "mpirun --allow-run-as-root --oversubscribe -n 3"
 LOOP = {"kf": {"hang": "loop"}}
+OF_DASK = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "host": "127.0.0.1"}
 KILLS = int(os.environ.get("CREDENCE_KILLS", "5"))
 TRIALS = 400
 
@@ -74,9 +74,8 @@ def test_executors_of_concurrent_futures(tmp_path, whole, kind):
 
 def test_a_cluster_of_dask(tmp_path, whole, monkeypatch):
     distributed = pytest.importorskip("distributed")
-    monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(HERE), os.environ.get("PYTHONPATH", "")]))
-    options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "host": "127.0.0.1"}
-    with distributed.LocalCluster(**options) as cluster, distributed.Client(cluster) as client:
+    monkeypatch.setenv("PYTHONPATH", environment()["PYTHONPATH"])
+    with distributed.LocalCluster(**OF_DASK) as cluster, distributed.Client(cluster) as client:
         executor = client.get_executor()
         credence.simulate(filters.drawn, trials=TRIALS, arms=ARMS, output=tmp_path / "a.h5", executor=executor)
         hung = credence.simulate(filters.troubled, trials=40, arms=LOOP, timeout=1, executor=executor)
@@ -97,8 +96,7 @@ def test_mpi4py(tmp_path, whole):
         f"        credence.simulate(filters.drawn, trials={TRIALS}, arms={ARMS}, output='a.h5', executor=executor)\n"
     )
     words = [*MPIRUN.split(), sys.executable, "-m", "mpi4py.futures"]
-    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), os.environ.get("PYTHONPATH", "")])}
-    subprocess.run([*words, str(script)], cwd=tmp_path, env=environment, check=True, timeout=120)
+    subprocess.run([*words, str(script)], cwd=tmp_path, env=environment(), check=True, timeout=120)
     assert is_same(tmp_path / "a.h5", whole)
 
 
@@ -223,8 +221,7 @@ sys.exit(main(sys.argv[1:]))
 
 
 def in_a_process(words, **given):
-    given["env"] = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), os.environ.get("PYTHONPATH", "")])}
-    return subprocess.Popen([sys.executable, *map(str, words)], start_new_session=True, **given)
+    return subprocess.Popen([sys.executable, *map(str, words)], start_new_session=True, env=environment(), **given)
 
 
 @pytest.mark.parametrize("kind", ["own", "standard"])
@@ -283,9 +280,8 @@ def test_studies_that_are_stopped_at_random_times(tmp_path):
 
 def test_what_cannot_be_sent_is_refused():
     with concurrent.futures.ProcessPoolExecutor(1) as executor:
-        with pytest.raises(credence.InputError, match="a task cannot be sent to the executor") as raised:
-            credence.simulate(lambda rng: filters.drawn(rng), trials=30, executor=executor)
-        assert "Define it in a module that the workers can import" in str(raised.value)
+        refused("a task cannot be sent to the executor.*Define it in a module that the workers can import",
+                credence.simulate, lambda rng: filters.drawn(rng), trials=30, executor=executor)  # fmt: skip
 
 
 class Breaking(concurrent.futures.Executor):
@@ -325,9 +321,6 @@ def test_tasks_that_are_lost_run_again(tmp_path, whole):
 
 # Studies of scenarios.
 
-SCENARIO = "[scenario]\nposes = 12\n[arms]\ncontrollers = fixed, greedy\n"
-
-
 def is_same_study(first, second):
     """Whether two studies are the same outside the group /run, bit for bit."""
     found = []
@@ -340,11 +333,9 @@ def is_same_study(first, second):
 
 
 @pytest.mark.parametrize("kind", ["own", "standard", "dask"])
-def test_shards_of_a_study_on_an_executor(tmp_path, kind):
-    path = tmp_path / "small.ini"
-    path.write_text(SCENARIO)
+def test_shards_of_a_study_on_an_executor(tmp_path, scenario, kind):
     given = {"trials": 1500, "seed": 3, "sweep": {"noise.heading": [0.01, 0.02]}}
-    whole = credence.run(path, **given)
+    whole = credence.run(scenario, **given)
     with contextlib.ExitStack() as stack:
         executor = 2
         if kind == "standard":
@@ -352,40 +343,34 @@ def test_shards_of_a_study_on_an_executor(tmp_path, kind):
             executor = stack.enter_context(pool)
         elif kind == "dask":
             distributed = pytest.importorskip("distributed")
-            options = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None, "host": "127.0.0.1"}
-            cluster = stack.enter_context(distributed.LocalCluster(**options))
+            cluster = stack.enter_context(distributed.LocalCluster(**OF_DASK))
             executor = stack.enter_context(distributed.Client(cluster)).get_executor()
-        merged = credence.run(path, executor=executor, shards=3, output=tmp_path / "merged.h5", **given)
+        merged = credence.run(scenario, executor=executor, shards=3, output=tmp_path / "merged.h5", **given)
     assert merged.complete
     assert is_same_study(whole, merged)
     assert str(credence.report(merged)).splitlines()[1:] == str(credence.report(whole)).splitlines()[1:]
 
 
 def test_a_study_on_an_executor_refuses_bad_input(tmp_path):
-    def said(**given):
-        with pytest.raises(credence.InputError) as raised:
-            credence.run(given.pop("scenario", SCENARIO), trials=300, **given)
-        return str(raised.value)
-
-    assert said(executor=2, until={"trace_P": "1%"}).startswith("cannot stop shards by until")
-    assert said(shards=2).startswith("shards: say nothing without an executor")
-    assert said(executor=2, shards=0).startswith("invalid shards=0 ")
-    assert "poses" in said(executor=2, scenario=SCENARIO.replace("12", "-12"))
-    assert "missing.ini (there is no such file)" in said(executor=2, scenario=tmp_path / "missing.ini")
     (tmp_path / "there.h5").touch()
-    assert "there.h5 (it exists)" in said(executor=2, output=tmp_path / "there.h5")
+    for scenario, given, said in (
+        (SCENARIO, {"executor": 2, "until": {"trace_P": "1%"}}, "^cannot stop shards by until"),
+        (SCENARIO, {"shards": 2}, "^shards: say nothing without an executor"),
+        (SCENARIO, {"executor": 2, "shards": 0}, "^invalid shards=0 "),
+        (SCENARIO.replace("12", "-12"), {"executor": 2}, "poses"),
+        (tmp_path / "missing.ini", {"executor": 2}, r"missing.ini \(there is no such file\)"),
+        (SCENARIO, {"executor": 2, "output": tmp_path / "there.h5"}, r"there.h5 \(it exists\)"),
+    ):
+        refused(said, credence.run, scenario, trials=300, **given)
     assert multiprocessing.active_children() == []
 
 
-def test_parts_are_merged(tmp_path, program):
-    path = tmp_path / "small.ini"
-    path.write_text(SCENARIO)
+def test_parts_are_merged(tmp_path, scenario, program):
     parts = [tmp_path / f"part-{i}.h5" for i in range(2)]
     for i, part in enumerate(parts):
-        assert program("run", path, "--trials=600", f"--shard={i}/2", "-o", part, "--quiet")[0] == 0
-    assert is_same_study(credence.merge(parts), credence.run(path, trials=600))
-    with pytest.raises(credence.Failure, match="lacks blocks 1 of 3"):
-        credence.merge(parts[:1])
+        assert program("run", scenario, "--trials=600", f"--shard={i}/2", "-o", part, "--quiet")[0] == 0
+    assert is_same_study(credence.merge(parts), credence.run(scenario, trials=600))
+    refused("lacks blocks 1 of 3", credence.merge, parts[:1], raises=credence.Failure)
 
 
 # The batch scripts of experiments/cluster, on this machine.
@@ -399,13 +384,9 @@ def test_the_batch_scripts_give_the_same_bits(tmp_path, kind):
     script = HERE.parents[1] / "experiments" / "cluster" / f"simulate_{kind}.sh"
     (tmp_path / "mine.py").write_text((HERE / "filters.py").read_text())
     given = {"FUNCTION": "mine:drawn", "TRIALS": "300", "OUTPUT": "out/a.h5", "PYTHON": sys.executable}
-    given |= {
-        "OPTIONS": "--arm right --arm calm scale=0.5",
-        "MPIRUN": "mpirun --allow-run-as-root --oversubscribe -n 3",
-    }
-    done = subprocess.run(
-        ["bash", str(script)], cwd=tmp_path, env={**os.environ, **given}, check=False, timeout=300, capture_output=True
-    )
+    given |= {"OPTIONS": "--arm right --arm calm scale=0.5", "MPIRUN": MPIRUN}
+    done = subprocess.run(["bash", str(script)], env={**os.environ, **given}, check=False, timeout=300,
+                          capture_output=True)  # fmt: skip
     assert done.returncode == 0, done.stderr
     assert b"right" in done.stdout
     credence.simulate(filters.drawn, trials=300, arms=ARMS, output=tmp_path / "b.h5")

@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 import pytest
 import records
+from conftest import refusal, refused
 
 import credence
 from credence.pictures.__main__ import main
@@ -30,13 +31,6 @@ def path(rng, sigma):
 def simulated(tmp_path_factory):
     folder = tmp_path_factory.mktemp("simulated")
     return credence.simulate(path, trials=300, arms=ARMS, output=folder / "slam.h5")
-
-
-def refusal(call, kind=credence.InputError):
-    with pytest.raises(kind) as raised:
-        call()
-    assert "\n" not in str(raised.value)
-    return str(raised.value)
 
 
 def test_columns_are_in_report_page_json_and_compare(simulated):
@@ -83,14 +77,15 @@ def file_of(arm):
 
 def test_seeds_and_trials_that_differ_are_no_pairs(simulated, program, tmp_path):
     other = credence.simulate(path, trials=300, seed=2, arms=ARMS, output=tmp_path / "other.h5")
-    assert "simulations of seeds 1 and 2 (" in refusal(lambda: credence.compare(simulated, other))
     files = [simulation.arm("fixed").path for simulation in (simulated, other)]
-    for call in (lambda: credence.compare(*files), lambda: credence.compare(simulated["fixed"], other["fixed"])):
-        assert "/@seed: is 2, and that of the first record 1: trials of different seeds are no pairs" in refusal(call)
+    said = "/@seed: is 2, and that of the first record 1: trials of different seeds are no pairs"
+    refused(said, credence.compare, *files)
+    refused(said, credence.compare, simulated["fixed"], other["fixed"])
+    refused("/@seed: is ", credence.compare, simulated, other, arms=("fixed", "planned"))
     code, _, err = program("compare", *files)
     assert (code, "/@seed: is 2" in err) == (2, True)
     huge = [credence.simulate(path, trials=20, seed=2**64 - i, arms=ARMS) for i in (1, 2)]
-    assert f"/@seed: is {2**64 - 2}" in refusal(lambda: credence.compare(huge[0]["fixed"], huge[1]["fixed"]))
+    assert f"/@seed: is {2**64 - 2}" in refusal(credence.compare, huge[0]["fixed"], huge[1]["fixed"])
     moved = tmp_path / "moved.h5"
     moved.write_bytes(file_of(simulated["fixed"]).read_bytes())
     with h5py.File(moved, "r+") as file:
@@ -98,12 +93,12 @@ def test_seeds_and_trials_that_differ_are_no_pairs(simulated, program, tmp_path)
     assert "/trial: differs from that of the first record in entry 17" in refusal(
         lambda: credence.compare(files[0], f"{moved}:fixed"))
     fewer = credence.simulate(path, trials=200, arms=ARMS)
-    assert "these are other runs" in refusal(lambda: credence.compare(simulated["fixed"], fewer["fixed"]))
+    assert "these are other runs" in refusal(credence.compare, simulated["fixed"], fewer["fixed"])
 
 
 def test_simulations_of_one_seed_are_compared_arm_by_arm(simulated):
     again = credence.simulate(lambda rng: path(rng, 0.9), trials=300)
-    assert "Give arms=(A, B)" in refusal(lambda: credence.compare(simulated, simulated))
+    assert "Give arms=(A, B)" in refusal(credence.compare, simulated, simulated)
     assert str(credence.compare(simulated, again, arms=("fixed", "run"))).startswith("fixed - run, ")
     assert str(credence.compare(simulated["fixed"], again["run"])).startswith("run - fixed, ")
     assert str(credence.compare(simulated.study)) == str(credence.compare(simulated))
@@ -154,8 +149,8 @@ def test_report_says_what_judge_says(simulated, tmp_path):
     assert credence.report(simulated, margin=0.5).json[0]["margin"] == 0.5
     damaged = tmp_path / "damaged.h5"
     damaged.write_bytes(file_of(simulated["fixed"]).read_bytes()[:700])
-    assert "damaged.h5" in refusal(lambda: credence.open(damaged), ValueError)
-    assert "resume=True" in refusal(lambda: credence.resume(simulated.study))
+    assert "damaged.h5" in refusal(credence.open, damaged, raises=ValueError)
+    assert "resume=True" in refusal(credence.resume, simulated.study)
 
 
 def test_a_report_has_trace_and_error_by_step_of_all_arms(simulated):
@@ -184,8 +179,8 @@ def test_the_command_draws_columns_of_ones_own(simulated, tmp_path, capsys):
     assert "slam-trace_P" in drawn
     title = credence.plot(simulated, "paired", column="rmse").get_suptitle()
     assert "rmse: fixed than planned" in title
-    assert "cannot run a trial of records again" in refusal(lambda: credence.animate(simulated), ValueError)
-    assert "invalid kind=place" in refusal(lambda: credence.plot(simulated, "place"), ValueError)
+    assert "cannot run a trial of records again" in refusal(credence.animate, simulated, raises=ValueError)
+    assert "invalid kind=place" in refusal(credence.plot, simulated, "place", raises=ValueError)
 
 
 def test_judge_takes_columns_and_gives_them_again(simulated):

@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 import pytest
 import studies
+from conftest import refused
 
 import credence
 from credence.grid import Grid
@@ -87,12 +88,9 @@ def test_aggregates_say_what_they_do_not_hold():
         assert list(arm.columns) == COLUMNS
         assert "aggregates" in repr(study)
         for ask in (lambda: arm.trace_P, lambda: arm.status):
-            with pytest.raises(AttributeError, match=r"because the study keeps aggregates\. Take arm\.mean"):
-                ask()
-        with pytest.raises(KeyError, match=r"has no nothing\. It has trace_P"):
-            arm.mean("nothing")
-        with pytest.raises(ValueError, match="an arm less itself is 0"):
-            arm.mean("trace_P", minus=arm)
+            refused(r"because the study keeps aggregates\. Take arm\.mean", ask, raises=AttributeError)
+        refused(r"has no nothing\. It has trace_P", arm.mean, "nothing", raises=KeyError)
+        refused("an arm less itself is 0", arm.mean, "trace_P", minus=arm, raises=ValueError)
         assert arm.ended["completed"] == 600
 
 
@@ -161,22 +159,16 @@ def test_an_arm_without_trials_is_said_to_be_not_run(tmp_path):
 def test_what_cannot_be_read_is_refused(tmp_path):
     text = tmp_path / "text.h5"
     text.write_text("no HDF5 at all")
-    with pytest.raises(ValueError, match="cannot be read as HDF5"):
-        credence.open(text)
-    with pytest.raises(FileNotFoundError, match="cannot be found"):
-        credence.open(tmp_path / "nothing.h5")
-    with pytest.raises(ValueError, match=r"Take credence\.open_trajectories"):
-        credence.open(studies.trajectory())
-    with pytest.raises(ValueError, match=r"Take credence\.open\."):
-        credence.open_trajectories(studies.one_scenario())
+    refused("cannot be read as HDF5", credence.open, text, raises=ValueError)
+    refused("cannot be found", credence.open, tmp_path / "nothing.h5", raises=FileNotFoundError)
+    refused(r"Take credence\.open_trajectories", credence.open, studies.trajectory(), raises=ValueError)
+    refused(r"Take credence\.open\.", credence.open_trajectories, studies.one_scenario(), raises=ValueError)
     with h5py.File(tmp_path / "other.h5", "w") as file:
         file["x"] = 1
-    with pytest.raises(ValueError, match="format=none"):
-        credence.open(tmp_path / "other.h5")
+    refused("format=none", credence.open, tmp_path / "other.h5", raises=ValueError)
     newer = studies.edited(studies.one_scenario(), tmp_path / "new.h5",
                            lambda file: file.attrs.modify("schema_version", np.int32(5)))
-    with pytest.raises(ValueError, match="schema_version=5 \\(this package reads 4\\)"):
-        credence.open(newer)
+    refused("schema_version=5 \\(this package reads 4\\)", credence.open, newer, raises=ValueError)
 
 
 def test_names_are_found_or_refused_with_those_that_are_there():
@@ -215,7 +207,8 @@ def test_a_grid_has_the_numbers_of_the_report():
         for place, name in np.ndenumerate(grid.names):
             assert dict(zip(("of", "at"), study[name].sweep, strict=True)) == parts[name, "fixed.ekf"]["sweep"]
             near(means[place], parts[name, "greedy.ekf"]["trace_P"]["mean"])
-        holes = Grid(study, grid.of, grid.coordinates, np.where(grid.names == grid.names[0, 0], "", grid.names))
+        names = np.where(grid.names == grid.names[0, 0], "", grid.names)
+        holes = Grid(study.scenarios, grid.of, grid.coordinates, names)
         assert np.isnan(holes.values(lambda scenario: 1.0)).tolist() == [[True, False], [False, False]]
 
 
@@ -235,8 +228,7 @@ def test_xarray_has_the_same_values_and_units():
         assert dataset.detailed_error.dims == ("detailed_trial", "step", "component")
         assert dataset.component.values.tolist()[:3] == ["theta", "r_x", "r_y"]
         if not hasattr(xarray, "DataTree"):
-            with pytest.raises(ImportError, match=re.escape("Install xarray 2024.10 or later")):
-                study.to_xarray()
+            refused(re.escape("Install xarray 2024.10 or later"), study.to_xarray, raises=ImportError)
             return
         np.testing.assert_array_equal(study.to_xarray()["ekf-circle-ranged/greedy.ekf/trace_P"], arm.trace_P)
 

@@ -46,14 +46,11 @@ def _ratio(scenario: Scenario, arms: Arms, series: Mapping[str, str], label: str
         measured = degrees > 0
         step, means = arm["step"][measured], arm.per_step(series[name])
         ratio = means.over(np.where(measured, degrees / max(arm.counted_trials, 1), np.nan))
-        mean, low, high = (values[measured] for values in (ratio.mean, *ratio.interval()))
+        mean, *ends = (values[measured] for values in (ratio.mean, *ratio.interval()))
         bounds = band(degrees[measured])
         if step.size:
             found[name] = float(np.average(mean, weights=degrees[measured])), float(mean.min()), float(mean.max())
-        shown = style.thinned(mean, low, high)
-        line = style.arm_line(place, len(arms), shown.size)
-        style.interval(axis, step[shown], mean[shown], low[shown], high[shown], line, len(arms))
-        axis.plot(step[shown], mean[shown], **line)
+        style.curve(axis, step, mean, ends, place, len(arms))
         drawn.append(mean)
         if step.size and (reach := float(np.max(bounds[1] - bounds[0]))) > widest:  # where arms have other bands
             widest, of_widest = reach, (step, *bounds)
@@ -97,11 +94,7 @@ def trace(scenario: Scenario, arms: Arms, width: float, *, group: str = "all") -
     found, drawn, unit, series = {}, [], "", _of(arms, "variance", group)
     for name, (place, arm) in arms.items():
         means = arm.per_step(series[name])
-        low, high = means.interval()
-        step, shown = arm["step"], style.thinned(means.mean, low, high)
-        line = style.arm_line(place, len(arms), shown.size)
-        style.interval(axis, step[shown], means.mean[shown], low[shown], high[shown], line, len(arms))
-        axis.plot(step[shown], means.mean[shown], **line)
+        style.curve(axis, arm["step"], means.mean, means.interval(), place, len(arms))
         drawn.append(means.mean)
         found[name], unit = (float(means.mean[-1]), float(np.mean(means.mean))), means.units
     style.step_axis(axis, arm["step"])

@@ -167,6 +167,17 @@ def interval(axis: Axes, x: FloatArray, mean: FloatArray, low: FloatArray, high:
                   ecolor=line["color"], elinewidth=0.8)
 
 
+def curve(axis: Axes, x: FloatArray, mean: FloatArray, ends: Sequence[FloatArray], place: int,
+          count: int) -> dict[str, Any]:
+    """The line of the arm of a place among `count`, and its interval; how the line is drawn."""
+    low, high = ends
+    shown = thinned(mean, low, high)
+    line = arm_line(place, count, shown.size)
+    interval(axis, x[shown], mean[shown], low[shown], high[shown], line, count)
+    axis.plot(x[shown], mean[shown], **line)
+    return line
+
+
 def ranked(values: Mapping[str, Any], say: Callable[[Any], str]) -> str:
     """The part of a message that names the arms: all of them up to three, else the lowest and the highest."""
     if len(values) <= 3:

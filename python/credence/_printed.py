@@ -1,0 +1,48 @@
+"""What is said of results: a text, numbers, and a page."""
+
+from __future__ import annotations
+
+import functools
+import json
+from typing import TYPE_CHECKING, Any
+
+from credence._calls import framed
+
+if TYPE_CHECKING:
+    from credence import _core
+
+
+class Printed:
+    """What a command says of files, or of arrays, as they were: ``str()`` is the text that it prints, and a notebook
+    shows its page. Pickled, it says the same in another process.
+
+    Attributes
+    ----------
+    json : list of dict
+        What the command prints with ``--format json``, the same bits.
+    """
+
+    def __init__(self, said: _core.Said | dict[str, str]) -> None:
+        self._said = said
+
+    def _in(self, form: str) -> str:
+        return self._said[form] if isinstance(self._said, dict) else self._said.in_format(form)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), ({form: self._in(form) for form in ("text", "json", "html")},)
+
+    @functools.cached_property
+    def json(self) -> list[dict[str, Any]]:
+        found: list[dict[str, Any]] = json.loads(self._in("json"))
+        return found
+
+    def __str__(self) -> str:
+        return self._in("text")
+
+    @property
+    def html(self) -> str:
+        """The page that the command writes with ``--format html``; it loads nothing and runs no script."""
+        return self._in("html")
+
+    def _repr_html_(self) -> str:
+        return framed(self.html)
