@@ -9,20 +9,18 @@ import importlib
 import os
 import sys
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from credence import InputError
 from credence._calls import say
 from credence._doors import needed
-from credence.judging import NOT_REFUTED
+from credence.judging import NOT_REFUTED, Verdict
 from credence.program import STOPPED, Interrupted
 from credence.simulating import simulate
 
-CONSISTENT = ("consistent",)
 
-
-def _function(name: str) -> Any:
+def function_of(name: str) -> Any:
     """The function MODULE:NAME; modules of the folder in which it is called are found."""
     module, _, attribute = name.partition(":")
     if not module or not attribute:
@@ -58,7 +56,7 @@ def _arms(given: Sequence[Sequence[str]]) -> dict[str, dict[str, Any]] | None:
 
 
 @contextlib.contextmanager
-def _executor(name: str | None) -> Iterator[Any]:
+def executor_of(name: str | None) -> Iterator[Any]:
     """The executor that a word means: a number of processes, ``dask``, ``dask:ADDRESS``, ``mpi``."""
     if name is None or name.isdigit():
         yield None if name is None else int(name)
@@ -75,6 +73,23 @@ def _executor(name: str | None) -> Iterator[Any]:
         raise InputError(f"invalid executor {name} (must be a number, dask, dask:ADDRESS or mpi). Give one of them.")
 
 
+def with_options_of_trials(made: argparse.ArgumentParser) -> argparse.ArgumentParser:
+    """A parser with what the commands that run a function take."""
+    made.add_argument("--seed", type=int, default=1)
+    made.add_argument("--executor", metavar="WHERE", help="a number of processes, dask, dask:ADDRESS or mpi")
+    made.add_argument("--batch", type=int, nargs="?", const=True, default=False, help="the function takes many "
+                      "generators")  # fmt: skip
+    made.add_argument("--require", choices=["consistent", "no-finding"], help="exit code 1 where a filter is not")
+    made.add_argument("--quiet", action="store_true", help="no progress")
+    return made
+
+
+def code_of(verdicts: Iterable[Verdict], required: str | None) -> int:
+    """The exit code, 1 where a verdict is not what is required."""
+    passes = {"consistent": ("consistent",), "no-finding": NOT_REFUTED}.get(required or "")
+    return int(passes is not None and any(verdict.verdict not in passes for verdict in verdicts))
+
+
 def parser() -> argparse.ArgumentParser:
     made = argparse.ArgumentParser(
         prog="python -m credence simulate",
@@ -83,28 +98,21 @@ def parser() -> argparse.ArgumentParser:
     )
     made.add_argument("function", metavar="MODULE:FUNCTION", help="a function of a generator that returns credence.Run")
     made.add_argument("--trials", type=float, required=True, help="runs of each arm; with --until the most")
-    made.add_argument("--seed", type=int, default=1)
     made.add_argument("--arm", nargs="+", action="append", default=[], metavar="WORD", help="NAME OPTION=VALUE ...")
-    made.add_argument("--executor", metavar="WHERE", help="a number of processes, dask, dask:ADDRESS or mpi")
-    made.add_argument(
-        "--batch", type=int, nargs="?", const=True, default=False, help="the function takes many generators"
-    )
     made.add_argument("-o", "--output", metavar="FILE.h5", help="the record, with a group for each arm")
     made.add_argument("--resume", action="store_true", help="resume from the trials that are kept beside the output")
     made.add_argument("--until", action="append", metavar="NUMBER=WIDTH", help="stop at a precision: nees_ratio=1%%")
     made.add_argument("--timeout", type=float, metavar="SECONDS", help="of a trial")
     made.add_argument("--failed", default=0.01, metavar="SHARE", help="of the trials that may fail (1%%)")
-    made.add_argument("--require", choices=["consistent", "no-finding"], help="exit code 1 where an arm is not")
-    made.add_argument("--quiet", action="store_true", help="no progress")
-    return made
+    return with_options_of_trials(made)
 
 
 def main(words: Sequence[str]) -> int:
     """Run the command and return its exit code. A batch system's SIGTERM stops it as Ctrl-C does."""
     given = parser().parse_args(words)
     try:
-        function, arms = _function(given.function), _arms(given.arm)
-        with _executor(given.executor) as executor:
+        function, arms = function_of(given.function), _arms(given.arm)
+        with executor_of(given.executor) as executor:
             study = simulate(
                 function, trials=given.trials, seed=given.seed, arms=arms, executor=executor, batch=given.batch,
                 output=given.output, resume=given.resume, until=given.until, timeout=given.timeout, failed=given.failed,
@@ -114,5 +122,4 @@ def main(words: Sequence[str]) -> int:
         print(f"credence simulate: {stopped}.{' To resume it: --resume.' * bool(given.output)}", file=sys.stderr)
         return STOPPED
     say(str(study))
-    passes = {"consistent": CONSISTENT, "no-finding": NOT_REFUTED}.get(given.require or "")
-    return 1 if passes and any(verdict.verdict not in passes for verdict in study.verdicts.values()) else 0
+    return code_of(study.verdicts.values(), given.require)

@@ -10,8 +10,7 @@ from credence._calls import say
 from credence._doors import needed
 from credence._names import printable
 from credence._outputs import check_output
-from credence._simulate_command import CONSISTENT, _executor, _function
-from credence.judging import NOT_REFUTED
+from credence._simulate_command import code_of, executor_of, function_of, with_options_of_trials
 from credence.tuning import tune
 
 
@@ -53,19 +52,12 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--start", nargs="+", action="extend", default=[], metavar="NAME=NUMBER")
     made.add_argument("--trials", type=float, default=200, help="that are tuned on (200)")
     made.add_argument("--held-out", type=float, help="that are judged (at least 2000)")
-    made.add_argument("--seed", type=int, default=1)
     made.add_argument("--objective", default="errors", metavar="NAME", help="errors, innovations or nees")
-    made.add_argument("--executor", metavar="WHERE", help="a number of processes, dask, dask:ADDRESS or mpi")
-    made.add_argument(
-        "--batch", type=int, nargs="?", const=True, default=False, help="the function takes many generators"
-    )
     made.add_argument("--arm", help="that of the scenario which is tuned (its first)")
     made.add_argument("--program", metavar="PATH", help="the program of a world of your own")
     made.add_argument("--picture", metavar="FILE", help="draw the score over the parameters: .png, .pdf or .svg")
     made.add_argument("--overwrite", action="store_true", help="replace the file of --picture where it exists")
-    made.add_argument("--require", choices=["consistent", "no-finding"], help="exit code 1 where the filter is not")
-    made.add_argument("--quiet", action="store_true", help="no progress")
-    return made
+    return with_options_of_trials(made)
 
 
 def main(words: Sequence[str]) -> int:
@@ -77,9 +69,9 @@ def main(words: Sequence[str]) -> int:
         check_output(given.picture, given.overwrite, inputs=[given.what])
         needed("matplotlib", "matplotlib", "draw a picture")
     is_function = ":" in given.what and not given.what.endswith(".ini")
-    with _executor(given.executor) as executor:
+    with executor_of(given.executor) as executor:
         tuned = tune(
-            _function(given.what) if is_function else given.what, free=_free(given.free), trials=given.trials,
+            function_of(given.what) if is_function else given.what, free=_free(given.free), trials=given.trials,
             seed=given.seed, objective=given.objective, start=_start(given.start), executor=executor,
             batch=given.batch, held_out=given.held_out, arm=given.arm, program=given.program,
             progress=False if given.quiet else None,
@@ -87,5 +79,4 @@ def main(words: Sequence[str]) -> int:
     say(str(tuned))
     if given.picture is not None:
         tuned.plot().save(given.picture)
-    passes = {"consistent": CONSISTENT, "no-finding": NOT_REFUTED}.get(given.require or "")
-    return 1 if passes and tuned.verdict.verdict not in passes else 0
+    return code_of([tuned.verdict], given.require)

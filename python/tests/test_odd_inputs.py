@@ -13,7 +13,7 @@ import pytest
 import records
 import test_array_doors as odd
 import xarray
-from conftest import refused
+from conftest import refusal, refused
 
 import credence
 
@@ -228,9 +228,7 @@ def test_what_is_refused_names_the_remedy_of_python():
         ({"error": ERROR}, "Give it as [trial, step, n, n], or as"),
         ({}, "Give error [trial, step, n], or truth and estimate with their manifold"),
     ):
-        with pytest.raises(credence.InputError) as refused:
-            credence.judge(**arguments)
-        assert remedy in str(refused.value)
+        assert remedy in refusal(credence.judge, **arguments)
 
 
 def test_dimensions_of_numpy_are_whole_numbers():

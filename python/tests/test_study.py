@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import pathlib
 import re
 
 import h5py
@@ -136,39 +137,34 @@ def test_failed_trials_are_nan_and_counted(tmp_path):
         assert "600 trials, 2 failed" in repr(arm)
 
 
-def test_a_shard_is_not_complete(tmp_path):
-    studies.program("run", studies.SEED / "ekf-circle-ranged.ini", "--trials=600", "--shard=1/3", "--quiet", "-o",
-                    tmp_path / "part.h5")
-    with credence.open(tmp_path / "part.h5") as study:
-        assert (study.trials, study.complete) == (600, False)
-        assert study["greedy.ekf"].trial.tolist() == list(range(256, 512))
+@pytest.mark.parametrize(("trials", "shard", "said"), [(600, "1/3", "not complete"), (256, "1/2", "not run yet")])
+def test_a_shard_is_not_complete_and_may_be_empty(trials, shard, said):
+    words = [f"--trials={trials}", f"--shard={shard}", "--quiet", "-o", "part.h5"]
+    studies.program("run", studies.SEED / "ekf-circle-ranged.ini", *words)
+    with credence.open("part.h5") as study:
+        arm = study["greedy.ekf"]
+        assert (study.trials, study.complete) == (trials, False)
+        assert arm.trial.tolist() == list(range(256, min(trials, 512)))
+        assert np.isnan(arm.nees).all() == np.isnan(arm.per_step("nees").standard_error).all() == (trials == 256)
         assert "not complete" in repr(study)
-        assert "not complete" in study._repr_html_()
+        assert said in study._repr_html_()
 
 
-def test_an_arm_without_trials_is_said_to_be_not_run(tmp_path):
-    studies.program("run", studies.SEED / "ekf-circle-ranged.ini", "--trials=256", "--shard=1/2", "--quiet", "-o",
-                    tmp_path / "none.h5")
-    with credence.open(tmp_path / "none.h5") as study:
-        assert study["greedy.ekf"].trials == 0
-        assert np.isnan(study["greedy.ekf"].nees).all()
-        assert np.isnan(study["greedy.ekf"].per_step("nees").standard_error).all()
-        assert "not run yet" in study._repr_html_()
-
-
-def test_what_cannot_be_read_is_refused(tmp_path):
-    text = tmp_path / "text.h5"
-    text.write_text("no HDF5 at all")
-    refused("cannot be read as HDF5", credence.open, text, raises=ValueError)
-    refused("cannot be found", credence.open, tmp_path / "nothing.h5", raises=FileNotFoundError)
-    refused(r"Take credence\.open_trajectories", credence.open, studies.trajectory(), raises=ValueError)
-    refused(r"Take credence\.open\.", credence.open_trajectories, studies.one_scenario(), raises=ValueError)
-    with h5py.File(tmp_path / "other.h5", "w") as file:
+def test_what_cannot_be_read_is_refused():
+    pathlib.Path("text.h5").write_text("no HDF5 at all")
+    with h5py.File("other.h5", "w") as file:
         file["x"] = 1
-    refused("format=none", credence.open, tmp_path / "other.h5", raises=ValueError)
-    newer = studies.edited(studies.one_scenario(), tmp_path / "new.h5",
-                           lambda file: file.attrs.modify("schema_version", np.int32(5)))
-    refused("schema_version=5 \\(this package reads 4\\)", credence.open, newer, raises=ValueError)
+    newer = studies.edited(studies.one_scenario(), pathlib.Path("new.h5"),
+                           lambda file: file.attrs.modify("schema_version", np.int32(5)))  # fmt: skip
+    for said, read, given in (
+        ("cannot be read as HDF5", credence.open, "text.h5"),
+        ("cannot be found", credence.open, "nothing.h5"),
+        (r"Take credence\.open_trajectories", credence.open, studies.trajectory()),
+        (r"Take credence\.open\.", credence.open_trajectories, studies.one_scenario()),
+        ("format=none", credence.open, "other.h5"),
+        (r"schema_version=5 \(this package reads 4\)", credence.open, newer),
+    ):
+        refused(said, read, given, raises=(ValueError, FileNotFoundError))
 
 
 def test_names_are_found_or_refused_with_those_that_are_there():
