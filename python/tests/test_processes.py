@@ -21,7 +21,7 @@ HEADING = "## What odd processes get"
 
 # What happens in the middle of a call finds `long_judge` at work on most machines, and `endless_run` on all.
 PREAMBLE = f"""
-import os, signal, sys, threading, time
+import os, pathlib, signal, sys, threading, time
 import numpy as np
 import credence
 SCENARIO = {SCENARIO!r}
@@ -186,7 +186,8 @@ def left(_):
 def interrupted(_):
     code, said = process("""
         def interrupt():
-            time.sleep(0.5)
+            while not list(pathlib.Path().glob("credence-*/*.journal")):
+                time.sleep(0.01)
             for _ in range(3):
                 os.kill(os.getpid(), signal.SIGINT)
                 time.sleep(0.2)

@@ -347,7 +347,9 @@ def test_a_process_that_is_stopped_or_killed_has_kept_what_was_done(executor, nu
     assert code == (0 if number == signal.SIGINT else -number), said
     trials = 300
     if number == signal.SIGINT:
-        done = int(re.search(r"stopped with (\d+) of 4000 trials done; .*stopped.h5.trials has them", said)[1])
+        found = re.search(r"stopped with (\d+) of 4000 trials done; .*stopped.h5.trials has them", said)
+        assert found, said
+        done = int(found[1])
         assert 0 < done < 4000
         assert f"{done} ({done}, 4, 2)" in said
         trials += done
