@@ -1,9 +1,14 @@
-"""What `report`, `compare`, `plot` and `open` take: results, whoever made them."""
+"""Results, whoever made them, which `report`, `compare`, `plot` and `open` take; and what is said of them."""
 
 from __future__ import annotations
 
 import abc
-from typing import Any, NamedTuple
+import functools
+import json
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+if TYPE_CHECKING:
+    from credence import _core
 
 
 class Sources(NamedTuple):
@@ -26,3 +31,41 @@ class Results(abc.ABC):
     @abc.abstractmethod
     def sources(self) -> Sources:
         """The files; InputError where they are not there as they were."""
+
+
+class Printed:
+    """What a command says of files, or of arrays, as they were: ``str()`` is the text that it prints, and a notebook
+    shows its page. Pickled, it says the same in another process.
+
+    Attributes
+    ----------
+    json : list of dict
+        What the command prints with ``--format json``, the same bits.
+    """
+
+    def __init__(self, said: _core.Said | dict[str, str]) -> None:
+        self._said = said
+
+    def _in(self, form: str) -> str:
+        return self._said[form] if isinstance(self._said, dict) else self._said.in_format(form)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), ({form: self._in(form) for form in ("text", "json", "html")},)
+
+    @functools.cached_property
+    def json(self) -> list[dict[str, Any]]:
+        found: list[dict[str, Any]] = json.loads(self._in("json"))
+        return found
+
+    def __str__(self) -> str:
+        return self._in("text")
+
+    @property
+    def html(self) -> str:
+        """The page that the command writes with ``--format html``; it loads nothing and runs no script."""
+        return self._in("html")
+
+    def _repr_html_(self) -> str:
+        from credence._calls import framed
+
+        return framed(self.html)

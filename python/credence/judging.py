@@ -13,8 +13,8 @@ from typing import Any, ParamSpec
 from credence import InputError, _core
 from credence import _doors as doors
 from credence._calls import errors_of_arguments, progress_bar, said_of_arrays
-from credence._printed import Printed
 from credence._record import Record
+from credence._results import Printed
 
 Given = ParamSpec("Given")
 

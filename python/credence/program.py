@@ -16,8 +16,7 @@ from credence import _doors as doors
 from credence._calls import errors_of_arguments, note, progress_bar, said
 from credence._names import not_utf8, printable
 from credence._outputs import goes_with
-from credence._printed import Printed
-from credence._results import Results, Sources
+from credence._results import Printed, Results, Sources
 
 if TYPE_CHECKING:
     from credence.study import Study

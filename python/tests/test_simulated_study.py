@@ -146,6 +146,8 @@ def test_report_says_what_judge_says(simulated, tmp_path):
     assert str(credence.report(simulated["fixed"])) == str(credence.report(simulated["fixed"].path))
     assert credence.report(simulated.study).json == credence.report(simulated).json
     assert credence.report(simulated["fixed"]).json == simulated["fixed"].verdict.json
+    assert [arm.name for arm in credence.open(simulated["fixed"]).arms] == ["fixed"]  # an arm is a result, too
+    assert credence.plot(simulated["fixed"], "nees").axes
     assert credence.report(simulated, margin=0.5).json[0]["margin"] == 0.5
     damaged = tmp_path / "damaged.h5"
     damaged.write_bytes(file_of(simulated["fixed"]).read_bytes()[:700])
