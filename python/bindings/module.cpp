@@ -79,10 +79,10 @@ std::tuple<int, std::string, std::string> command(const std::string& name, const
 
 void say(Said* said, const std::string& name, const std::vector<std::string>& arguments, const nb::dict& options) {
     const cli::Parsed parsed = cli::parsed_of(command_of(name), arguments, values_of(command_of(name), options));
-    new (said) Said{alone([&] {
-        return name == "report"  ? cli::reported(parsed)
-               : name == "judge" ? cli::judged(parsed)
-                                 : cli::compared(parsed);
+    new (said) Said{alone([&]() -> cli::Rendering {
+        if (name == "compare") return cli::compared(parsed);
+        const cli::Reported of = name == "report" ? cli::reported(parsed) : cli::judged(parsed);
+        return [of](const std::string& format) { return cli::rendered(of.report, format, of.path, of.run); };
     })};
 }
 

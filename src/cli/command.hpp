@@ -104,21 +104,21 @@ Option overwrite_option();
 /// --format: the first of `formats` by default.
 Option format_option(const std::vector<std::string>& formats);
 
-// Options of report and judge for rendering, and the rendering itself. give_report returns the exit code.
-struct ReportRequest {
-    std::string format;
-    Limits limits;
+/// A report, the path after which its page is called, and facts of how its numbers came about.
+struct Reported {
+    Report report;
+    std::string path;
+    RunFacts run;
 };
-ReportRequest read_report_request(const Parsed& parsed);
+/// What `report` says of a results file, and `judge` of records.
+Reported reported(const Parsed& parsed);
+Reported judged(const Parsed& parsed);
 std::string rendered(const Report& report, const std::string& format, const std::string& path, const RunFacts& run);
-/// `path` and `run`: the source of the report's numbers.
-int give_report(const Parsed& parsed, const ReportRequest& request, const Report& report, const std::string& path,
-                const RunFacts& run);
+/// Checks the options of report and judge, renders what is made, and returns the exit code.
+int give_report(const Parsed& parsed, Reported (*make)(const Parsed&));
 
-/// What `report`, `judge` or `compare` says of files, computed once: its text in a format of the command.
+/// What is said of files, computed once: its text in a format of the command.
 using Rendering = std::function<std::string(const std::string& format)>;
-Rendering reported(const Parsed& parsed);
-Rendering judged(const Parsed& parsed);
 Rendering compared(const Parsed& parsed);
 
 // The subcommands: their descriptions, and the functions that run them and return the exit code.

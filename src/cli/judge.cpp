@@ -46,16 +46,9 @@ const Command& judge_command() {
     return command;
 }
 
-namespace {
-
-/// What is said of records, and how the log of the only one was read.
-struct OfRecords {
-    Report report;
-    RunFacts facts;
-};
-
-OfRecords of_records(const Parsed& parsed, const Limits& limits) {
+Reported judged(const Parsed& parsed) {
     if (parsed.arguments.empty()) throw InputError("judge takes one record or several. Give RECORD.h5.");
+    const Limits limits = parse_limits(parsed);
     const int segments = parse_segments(parsed);
     std::vector<std::string> records;
     for (const std::string& path : parsed.arguments) {
@@ -72,22 +65,9 @@ OfRecords of_records(const Parsed& parsed, const Limits& limits) {
         if (!record.log.empty() && records.size() == 1) facts = {{"log", record.log}};
         reports.push_back(make_record_report(std::move(record), path, limits));
     }
-    return {together(std::move(reports)), facts};
+    return {together(std::move(reports)), parsed.arguments.front(), facts};
 }
 
-}  // namespace
-
-int judge(const Parsed& parsed) {
-    const ReportRequest request = read_report_request(parsed);
-    const OfRecords said = of_records(parsed, request.limits);
-    return give_report(parsed, request, said.report, parsed.arguments.front(), said.facts);
-}
-
-Rendering judged(const Parsed& parsed) {
-    const OfRecords said = of_records(parsed, parse_limits(parsed));
-    return [said, path = parsed.arguments.front()](const std::string& format) {
-        return rendered(said.report, format, path, said.facts);
-    };
-}
+int judge(const Parsed& parsed) { return give_report(parsed, judged); }
 
 }  // namespace credence::cli

@@ -29,15 +29,6 @@ const Command& report_command() {
     return command;
 }
 
-ReportRequest read_report_request(const Parsed& parsed) {
-    const ReportRequest request{parsed.choice("format"), parse_limits(parsed)};
-    check_output_option(parsed);
-    if (parsed.has("require")) parsed.choice("require");
-    else if (parsed.has("strict"))
-        throw InputError("--strict says nothing without --require. Add --require no-finding or --require consistent.");
-    return request;
-}
-
 std::string rendered(const Report& report, const std::string& format, const std::string& path, const RunFacts& run) {
     if (format == "json") return report_json(report);
     if (format == "csv") return report_csv(report);
@@ -45,44 +36,30 @@ std::string rendered(const Report& report, const std::string& format, const std:
     return report_text(report);
 }
 
-namespace {
-
-/// The path of the results file that is reported.
-const std::string& reported_path(const Parsed& parsed) {
-    if (parsed.arguments.size() != 1) throw InputError("report takes one results file. Give FILE.h5.");
-    return parsed.arguments.front();
-}
-
-StoredStudy reported_study(const std::string& path) {
-    check_kind(path, {FileKind::results});
-    return read_results(path, most_totals_in_memory);
-}
-
-}  // namespace
-
-int give_report(const Parsed& parsed, const ReportRequest& request, const Report& report, const std::string& path,
-                const RunFacts& run) {
-    write_output(parsed, rendered(report, request.format, path, run));
+int give_report(const Parsed& parsed, Reported (*make)(const Parsed&)) {
+    const std::string format = parsed.choice("format");
+    check_output_option(parsed);
+    if (parsed.has("require")) parsed.choice("require");
+    else if (parsed.has("strict"))
+        throw InputError("--strict says nothing without --require. Add --require no-finding or --require consistent.");
+    const Reported given = make(parsed);
+    write_output(parsed, rendered(given.report, format, given.path, given.run));
     if (parsed.has("require"))
-        require(report, parsed.choice("require") == "consistent" ? Requirement::consistent : Requirement::no_finding,
+        require(given.report,
+                parsed.choice("require") == "consistent" ? Requirement::consistent : Requirement::no_finding,
                 parsed.has("strict"));
     return 0;
 }
 
-int report(const Parsed& parsed) {
-    const std::string& path = reported_path(parsed);
-    const ReportRequest request = read_report_request(parsed);
-    const StoredStudy stored = reported_study(path);
-    return give_report(parsed, request, make_report(stored.study, request.limits), path, stored.run);
+Reported reported(const Parsed& parsed) {
+    if (parsed.arguments.size() != 1) throw InputError("report takes one results file. Give FILE.h5.");
+    const std::string& path = parsed.arguments.front();
+    const Limits limits = parse_limits(parsed);
+    check_kind(path, {FileKind::results});
+    StoredStudy stored = read_results(path, most_totals_in_memory);
+    return {make_report(stored.study, limits), path, std::move(stored.run)};
 }
 
-Rendering reported(const Parsed& parsed) {
-    const std::string path = reported_path(parsed);
-    const Limits limits = parse_limits(parsed);
-    StoredStudy stored = reported_study(path);
-    return [report = make_report(stored.study, limits), path, run = std::move(stored.run)](const std::string& format) {
-        return rendered(report, format, path, run);
-    };
-}
+int report(const Parsed& parsed) { return give_report(parsed, reported); }
 
 }  // namespace credence::cli
