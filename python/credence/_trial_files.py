@@ -384,8 +384,9 @@ def write_records(
                 failures[arm, trial] = Failure(arm, trial, f"it is of another form than the first run: {why}")
             if not why:
                 fitting.setdefault(arm, []).append((segment, arrays))
+    in_order = sorted(failures.values(), key=lambda one: (one.trial, one.arm))
     if not layouts:
-        return sorted(failures.values(), key=lambda one: (one.trial, one.arm))
+        return in_order
     with whole(path) as part, h5py.File(part, "w", libver=("v110", "v110")) as file:
         file.attrs["record_version"] = 2
         file.attrs["seed"] = np.uint64(seed)  # and of each arm, which is a record by itself
@@ -400,4 +401,4 @@ def write_records(
             record = _Record(group, layout, max(lengths, default=0), numbers)
             record.write(fitting[arm])
             record.write_failures({trial: one for (of, trial), one in failures.items() if of == arm})
-    return sorted(failures.values(), key=lambda one: (one.trial, one.arm))
+    return in_order

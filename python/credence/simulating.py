@@ -279,13 +279,11 @@ class SimulatedArm(Results):
         import h5py
 
         named = ("manifold", "chart", "quaternion", "groups", "row_groups", "component_names", "component_units")
-        arguments: dict[str, Any] = {}
+        arguments: dict[str, Any] = {"columns": self.columns} if self.columns else {}
         with self._opened() as file:
             for name, dataset in file.items():
                 if isinstance(dataset, h5py.Dataset) and name not in ("trial", "failure"):
                     arguments[name] = np.asarray(dataset[()])
-            if columns := file.get("column"):
-                arguments["columns"] = {name: np.asarray(column[()]) for name, column in columns.items()}
             for name, group in file.get("group", {}).items():
                 for what, dataset in group.items():
                     arguments.setdefault(f"group_{what}", {})[name] = np.asarray(dataset[()])
@@ -449,11 +447,9 @@ class _Engine:
 
     def _numbers(self, count: int) -> Iterator[list[int]]:
         """Trials that are missing: one by one, or by batches."""
-        if not self.work.batch:
-            yield from ([number] for number in range(count) if number not in self.trials.done)
-            return
-        for first in range(0, count, self.work.batch):
-            batch = [one for one in range(first, min(first + self.work.batch, count)) if one not in self.trials.done]
+        size = self.work.batch or 1
+        for first in range(0, count, size):
+            batch = [one for one in range(first, min(first + size, count)) if one not in self.trials.done]
             if batch:
                 yield batch
 
