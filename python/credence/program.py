@@ -467,7 +467,7 @@ def compare(
         arm against its baseline, every arm of a simulation against its first, or the arms of further studies against
         those of the first.
     failed : float or str
-        A warning comes first where more than this share of the trials failed (0.01).
+        A warning comes first where more than this share of the trials failed (0.01, or what a simulation was given).
 
     Returns
     -------
@@ -475,6 +475,8 @@ def compare(
     """
     sources = [_sources_of(study) for study in studies]
     of_records = [one.records for one in sources if one.records]
+    if failed is None:
+        failed = next((one.limit for one in studies if isinstance(one, Results)), None)
     if of_records and len(of_records) < len(studies):
         raise _core.InputError("cannot compare records with results files. Give studies of one kind.")
     if of_records:

@@ -38,12 +38,11 @@ from credence._trial_files import Trials, get_text, write_records
 from credence._trials import BATCH, Arms, Array, Failure, Frame, Work, generator, is_frame, run_chunk, same
 from credence._workers import TRIES, Workers
 from credence.judging import REFUTED, Verdict, judge, tune_hint
-from credence.program import SEED, Interrupted, compare, report
+from credence.program import SEED, Interrupted, report
 
 if TYPE_CHECKING:
     from credence.arm import Arm
     from credence.means import Means
-    from credence.program import Comparison
     from credence.study import Study
 
     File = str | os.PathLike[str]
@@ -357,10 +356,6 @@ class Simulation(Results):
     def generator(self, trial: int) -> np.random.Generator:
         """The generator that a trial got, so that the trial can be run again by itself."""
         return generator(self.seed, trial)
-
-    def compare(self, arms: str | tuple[str, str] | None = None, failed: float | str | None = None) -> Comparison:
-        """What `credence.compare` says of the arms: A - B of those named, else of every arm and the first."""
-        return compare(self, arms=arms, failed=self.limit if failed is None else failed)
 
     @property
     def records(self) -> dict[str, str]:

@@ -141,12 +141,7 @@ class Tuned:
             Values of the parameter, and the score on the trials that were tuned on: NaN where there is none.
         """
         space = self._objective.space
-        j, path = self._path(name)
-        error = self._facts.error[j]
-        low, high = 0.0, float(space.range[j])
-        if math.isfinite(error) and error > 0:
-            low, high = max(low, self._w[j] - reach * error), min(high, self._w[j] + reach * error)
-        along = np.linspace(low, high, points)
+        j, path, along, _ = self._along(name, points, reach)
         places = self._w + (along - self._w[j])[:, None] * path
         places[:, j] = along
         places = np.clip(places, 0, space.range)
@@ -197,20 +192,16 @@ class Tuned:
     def parabola(self, name: str, points: int = 61, reach: float = 4) -> tuple[Array, Array]:
         """The rise of the score over a parameter to second order, with all others at their best: as `profile`, from
         what is known at the best point. Empty where the score does not see the parameter, or it is at a bound."""
-        space = self._objective.space
-        j, path = self._path(name)
-        error = self._facts.error[j]
-        if not (math.isfinite(error) and error > 0):
+        j, path, along, is_known = self._along(name, points, reach)
+        if not is_known:
             return np.empty(0), np.empty(0)
-        H = self._facts.hessian
-        curvature = float(path @ H @ path)
-        ends = max(0.0, self._w[j] - reach * error), min(float(space.range[j]), self._w[j] + reach * error)
-        along = np.linspace(*ends, points)
-        values = np.array([space.values(self._w + (one - self._w[j]) * path)[name] for one in along])
-        return values, curvature * (along - self._w[j]) ** 2 / 2
+        curvature = float(path @ self._facts.hessian @ path)
+        values = [self._objective.space.values(self._w + (one - self._w[j]) * path)[name] for one in along]
+        return np.array(values), curvature * (along - self._w[j]) ** 2 / 2
 
-    def _path(self, name: str) -> tuple[int, Array]:
-        """The place of a parameter, and how w moves with its coordinate where all others stay at their best."""
+    def _along(self, name: str, points: int, reach: float) -> tuple[int, Array, Array, bool]:
+        """The place of a parameter, how w moves with its coordinate where all others stay at their best, coordinates to
+        so many standard errors on either side [point], and whether there is one: else they are between the bounds."""
         names = self._objective.space.names
         if name not in names:
             raise KeyError(f"{name} was not tuned. Those are {', '.join(names)}")
@@ -220,7 +211,11 @@ class Tuned:
         path = np.zeros(len(self._w))
         path[j] = 1
         path[others] = -np.linalg.solve(H[np.ix_(others, others)], H[others, j])
-        return j, path
+        error, low, high = self._facts.error[j], 0.0, float(self._objective.space.range[j])
+        is_known = bool(math.isfinite(error) and error > 0)
+        if is_known:
+            low, high = max(low, self._w[j] - reach * error), min(high, self._w[j] + reach * error)
+        return j, path, np.linspace(low, high, points), is_known
 
     def _values(self, places: Array) -> Array:
         try:

@@ -125,8 +125,7 @@ def test_a_record_is_judged_as_its_fields_are():
     said = credence.judge.__doc__
     assert [name for name in inspect.signature(credence.judge).parameters if not re.search(rf"\b{name}\b", said)] == []
     assert "array [trial, step, n]" in said
-    with pytest.raises(TypeError, match=r"^judge\(\) got an unexpected keyword argument 'marign'"):
-        credence.judge(record, marign=0.2)
+    refused(r"^judge\(\) got an unexpected keyword.*'marign'", credence.judge, record, marign=0.2, raises=TypeError)
 
 
 def test_a_path_stands_alone():

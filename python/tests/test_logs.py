@@ -319,8 +319,7 @@ class TestMat:
         scipy.io.savemat(tmp_path / "a.mat", {"error": np.ones((3, 4)), "covariance": np.ones((3, 4))})
         refused(r"fit both orders, or none. Give order", adapters.from_mat, tmp_path / "a.mat")
         assert adapters.from_mat(tmp_path / "a.mat", order="F")["error"].shape == (4, 3)
-        with pytest.raises(credence.InputError, match="there is no array e in it \\(it has error, covariance\\)"):
-            adapters.from_mat(tmp_path / "a.mat", {"error": "e"})
+        refused("there is no array e in it .it has error, cov", adapters.from_mat, tmp_path / "a.mat", {"error": "e"})
         (tmp_path / "b.mat").write_text("words")
         refused(r"b.mat: it cannot be read as a .mat file", adapters.from_mat, tmp_path / "b.mat")
 
@@ -384,8 +383,7 @@ class TestTables:
 
     def test_files_that_are_no_tables(self, tmp_path: Path) -> None:
         (tmp_path / "a.csv").write_text("x,y\n1,2\n3\n")
-        with pytest.raises(credence.InputError, match=r"a.csv: row 2 .* has 1 cells \(must be 2"):
-            adapters.from_table(tmp_path / "a.csv", error="x", sigma="y")
+        refused("a.csv: row 2 .* has 1 cells .must be 2", adapters.from_table, tmp_path / "a.csv", error="x", sigma="y")
 
 
 class TestUnitsOfTimes:
@@ -402,8 +400,7 @@ class TestUnitsOfTimes:
         of = log(60)
         expected = adapters.from_tum(*tum(tmp_path, of))
         taken = r"estimate.csv: its times are taken for ns, in which they are 5e-\d+ s apart \(must be at least 1e-06"
-        with pytest.raises(credence.InputError, match=rf"{taken} s\). Say their unit, such as units time={unit}."):
-            adapters.from_euroc(*self.euroc(tmp_path, of, scale, scale))
+        refused(rf"{taken} s.* such as units time={unit}", adapters.from_euroc, *self.euroc(tmp_path, of, scale, scale))
         with pytest.raises(credence.InputError, match=rf"truth.csv: .*, such as units truth_time={unit}."):
             adapters.from_euroc(*self.euroc(tmp_path, of, scale, scale), units={"time": unit})
         both = {"time": unit, "truth_time": unit}
@@ -531,8 +528,7 @@ class TestDegrees:
             refused(r"estimate: has angles up to .* in degrees. Give", credence.judge, **given)
             write_record(str(tmp_path / "deg.h5"), given)
             refused(r"deg.h5: /estimate: has angles up to .* the attribute", credence.judge, tmp_path / "deg.h5")
-            with pytest.raises(credence.InputError, match="component_units: has `deg` for theta, an angle of the"):
-                credence.judge(**given, component_units=["m", "deg"])
+            refused("component_units: has `deg` for theta, an", credence.judge, **given, component_units=["m", "deg"])
 
 
 class TestWhatFilesLack:
@@ -554,10 +550,8 @@ class TestWhatFilesLack:
         truth = write(tmp_path / "poses.txt", kitti(of.pose)[np.arange(40) != 7])
         times = write(tmp_path / "times.txt", of.time)
         refused(r"poses.txt: it has 39 poses, and .*kitti.txt 40. Give the true", adapters.from_kitti, estimate, truth)
-        with pytest.raises(credence.InputError, match=r"times.txt: it has 40 times, and .*poses.txt 39 poses. Give"):
-            adapters.from_kitti(estimate, truth, times)
-        with pytest.raises(credence.InputError, match=r"kitti.txt: it has no times, and .* Give their times \(times\)"):
-            adapters.from_kitti(estimate, tum(tmp_path, of)[1])
+        refused(r"times.txt: it has 40 times, and .*poses.txt 39 poses", adapters.from_kitti, estimate, truth, times)
+        refused(r"kitti.txt: it has no times, and .*\(times\)", adapters.from_kitti, estimate, tum(tmp_path, of)[1])
 
     @pytest.mark.parametrize("more", [4, 8])
     def test_lines_of_tum_with_as_many_numbers_as_kitti_s(self, tmp_path: Path, more: int) -> None:
@@ -585,8 +579,7 @@ class TestWhatFilesLack:
 
     def test_negative_sigmas(self, tmp_path: Path) -> None:
         table = {"e": np.zeros(5), "s": np.array([1.0, 1, -0.5, 1, -2])}
-        with pytest.raises(credence.InputError, match=r"sigma \(s\) is below 0 at row 3 \(-0.5\), and at 2 in all"):
-            adapters.from_table(table, error="e", sigma="s")
+        refused(r"sigma \(s\) is below 0 at row 3 \(-0.5\), and at 2", adapters.from_table, table, error="e", sigma="s")
         rows = np.c_[np.arange(4.0), np.tile([0, 0, 0, 1], (4, 1)), np.ones((4, 12))]
         files = [write(tmp_path / name, rows) for name in ("estimate", "truth")]
         with pytest.raises(credence.InputError, match="deviation: a standard deviation is below 0 at row 1"):

@@ -399,13 +399,19 @@ def test_the_command_draws_all_that_a_file_has(tmp_path, capsys):
     assert b"<dc:date>" not in (tmp_path / "again" / "kf-circle-constant-nees.svg").read_bytes()
 
 
-def test_the_command_draws_grids_and_trials(tmp_path):
-    assert main(given(studies.swept(), "-o", tmp_path)) == 0
-    assert {path.stem for path in tmp_path.iterdir()} == {
-        f"base-heading-noise-sweep-{what}" for what in ("nees_ratio", "trace_P", "difference")}
-    assert main(given(studies.trajectory(), "-o", tmp_path / "trial")) == 0
-    assert {path.stem for path in (tmp_path / "trial").iterdir()} == {
-        f"ekf-circle-ranged-greedy.ekf-seed-1-trial-17-{kind}" for kind in OF_TRIAL}
+THREE = [f"ekf-circle-ranged-paired-{column}" for column in ("trace_P", "unseen", "pose_error")]
+FILMED = ["--kind", "animation", "--scenario", "ekf-circle-ranged", "--arms", "greedy", "--trial", "17"]
+
+
+@pytest.mark.parametrize(("make", "words", "stems"), [
+    (studies.swept, [], [f"base-heading-noise-sweep-{what}" for what in ("nees_ratio", "trace_P", "difference")]),
+    (studies.trajectory, [], [f"ekf-circle-ranged-greedy.ekf-seed-1-trial-17-{kind}" for kind in OF_TRIAL]),
+    (studies.waypoints, ["--kind", "paired", "--vector", "svg"], THREE),
+    (MAKERS[7], ["--kind", "paired", "--arms", "random,follow"], THREE),
+    (studies.two_scenarios, FILMED, ["ekf-circle-ranged-animation-greedy.ekf"])])
+def test_the_command_draws_grids_trials_pairs_and_films(make, words, stems, tmp_path):
+    assert main(given(make(), "-o", tmp_path / "new", *words)) == 0
+    assert {path.stem for path in (tmp_path / "new").iterdir()} == {*stems}
 
 
 def test_the_command_says_what_aggregates_do_not_hold(tmp_path, capsys):
@@ -413,19 +419,6 @@ def test_the_command_says_what_aggregates_do_not_hold(tmp_path, capsys):
     assert "keeps aggregates. They need the trials" in capsys.readouterr().err
     assert not list(tmp_path.glob("*distribution*"))
     assert list(tmp_path.glob("*verdicts*"))
-
-
-def test_the_command_draws_the_pairs_of_any_arms(tmp_path):
-    assert main(given(studies.waypoints(), "-o", tmp_path, "--kind", "paired", "--vector", "svg")) == 0
-    assert len(list(tmp_path.glob("*-paired-*.png"))) == 3
-    assert main(given(studies.arms(7), "-o", tmp_path / "two", "--kind", "paired", "--arms", "random,follow")) == 0
-    assert len(list((tmp_path / "two").glob("*-paired-*.png"))) == 3
-
-
-def test_the_command_films_a_trial(tmp_path):
-    words = ["--kind", "animation", "--scenario", "ekf-circle-ranged", "--arms", "greedy", "--trial", "17"]
-    assert main(given(studies.two_scenarios(), "-o", tmp_path, *words)) == 0
-    assert [path.name for path in tmp_path.iterdir()] == ["ekf-circle-ranged-animation-greedy.ekf.gif"]
 
 
 def test_the_command_replaces_pictures_only_if_it_is_told_to(tmp_path, capsys):
