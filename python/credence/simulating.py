@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import importlib.util
 import inspect
 import math
 import os
@@ -605,11 +604,6 @@ def _tune_hint(run: Callable[..., Any], arms: Arms, refuted: str) -> str:
     return tune_hint()
 
 
-def _refuse_missing(module: str, why: str) -> None:
-    if importlib.util.find_spec(module) is None:
-        raise _core.InputError(f"{module} is not installed ({why}). Install it: pip install {module}.")
-
-
 def _refuse_bad_limit(failed: float | str) -> None:
     """Refuse a share that `judge` would refuse in the end."""
     one = (np.ones((1, 1)), float(np.finfo(float).eps))
@@ -704,9 +698,9 @@ def simulate(
     plan = _arms(arms)
     goals = _goals(until, plan)
     _refuse_bad_limit(failed)
-    _refuse_missing("h5py", "trials are kept in HDF5 files")
+    doors.needed("h5py", "h5py", "keep trials in a file of HDF5")
     if goals:
-        _refuse_missing("scipy", "until needs its quantiles")
+        doors.needed("scipy.stats", "scipy", "stop at a precision")
     if output is None and resume:
         raise _core.InputError("cannot resume (there is no output). Name the output of the study that is resumed.")
     files = _Files(output, arms, resume)

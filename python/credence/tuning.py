@@ -30,7 +30,7 @@ from credence._tune_search import FAILED, Known, Objective, Space, known, search
 from credence._tune_sources import FunctionSource, LogSource, ScenarioSource, Source, held_out_seed
 from credence.judging import NOT_REFUTED, Verdict
 from credence.program import SEED
-from credence.simulating import _refuse_missing, batch_size
+from credence.simulating import batch_size
 
 if TYPE_CHECKING:
     from credence.pictures.style import Picture
@@ -329,9 +329,7 @@ def _said(tuned: Tuned) -> list[str]:
 
 
 def _refuse_old_scipy() -> None:
-    _refuse_missing("scipy", "its optimiser searches")
-    import scipy
-
+    scipy = doors.needed("scipy", "scipy", "tune")
     if tuple(map(int, scipy.__version__.split(".")[:2])) < (1, 14):
         raise InputError(f"SciPy {scipy.__version__} has no COBYQA. Install it anew: pip install 'scipy>=1.14'.")
 
