@@ -1,15 +1,13 @@
 #pragma once
-// What is kept of a study's first trials only: the errors of the state, and how far whitened innovations are
-// correlated in time [docs/statistics.md, Whiteness, NCI]. An observer of the trial; idle unless asked.
+// The observer of a built-in world's trials that fills PackDetails.
 //
 //   nu~ = L^-1 nu, S = L L', rows features (body frame) then edges in graph order
 
-#include "engine/moments.hpp"
+#include "engine/pack_details.hpp"
 #include "slam/trial/step_evaluation.hpp"
 
 namespace credence {
 
-inline constexpr int largest_lag = 10;
 /// Pairs of rows that are whitened: with more edges, the features' rows alone.
 inline constexpr int largest_whitened = 256;
 
@@ -17,6 +15,11 @@ inline constexpr int largest_whitened = 256;
 inline bool edges_whitened(int features, int edges) { return features + edges <= largest_whitened; }
 
 inline namespace CREDENCE_TARGET {
+
+inline int whitened_pairs(const CommonView& problem) {
+    const int edges = problem.filter.edge_count;
+    return problem.features + (edges_whitened(problem.features, edges) ? edges : 0);
+}
 
 /// Rows of an edge: f_to - f_from.
 template <class Layout, class Real>
@@ -42,29 +45,17 @@ Vector2<Real> whitened(Real xx, Real xy, Real yy, const Vector2<Real>& nu) {
     return {x, fnma(l_xy, x, nu.y) / l_yy};
 }
 
-/// One pose's whitened innovation, two rows a pair; 0 where not observed.
-template <class Real>
-struct WhitenedInnovation {
-    Vector2<Real> pair[largest_whitened];
-    Real observed[largest_whitened];  ///< 1 or 0
-};
-
-/// Watches a trial. `on` false: does nothing.
+/// Watches a trial, and keeps the details of its pack where some are asked for.
 template <class Layout, class Real>
 class Detail {
 public:
-    bool on = false;
-    const CommonView* problem = nullptr;
-    Real* errors = nullptr;           ///< [n, K - 1] x^ - x after the updates
-    Real* moments = nullptr;          ///< [n + n (n + 1)] of moment_count, those of the groups' NEES left out; or null
-    Real product_sum[largest_lag];    ///< [lag - 1] sum over poses and rows of nu~_k nu~_{k + lag}
-    Real product_count[largest_lag];  ///< [lag - 1]
+    void watch(const CommonView& problem, PackDetails<Real>& details) {
+        problem_ = &problem;
+        details_ = &details;
+    }
 
     template <class... Anything>
-    void started(const Anything&...) {
-        for (int i = 0; moments != nullptr && i < own_moment_count(problem->state_size); ++i) moments[i] = Real(0);
-        for (int lag = 0; lag < largest_lag; ++lag) product_sum[lag] = product_count[lag] = Real(0);
-    }
+    void started(const Anything&...) {}
     template <class... Anything>
     void planned(const Anything&...) {}
 
@@ -73,46 +64,44 @@ public:
                    const Command<Real>&, const Belief<Real, Layout::capacity>& belief,
                    const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
                    const Linearisation& linearised) {
-        if (!on) return;
+        if (!details_->on) return;
         truth_ = &truth;
-        whiten(k, layout, belief, sightings, edge_measurement, linearised);
-        correlate(k, pair_count(layout));
+        whiten(k - 1, layout, belief, sightings, edge_measurement, linearised);
+        details_->products.correlate(k - 1);
     }
 
     void updated(int k, const Layout& layout, const Belief<Real, Layout::capacity>& belief, const Real*) {
-        if (!on) return;
+        if (!details_->on) return;
         Real error[Layout::capacity];
         estimation_error(belief, *truth_, layout, error);
         const int n = layout.size();
-        for (int i = 0; i < n; ++i) errors[i * (problem->poses - 1) + k - 1] = error[i];
-        if (moments != nullptr) add_step_moments(n, belief.covariance, error);
+        for (int i = 0; i < n; ++i) details_->errors[i * (problem_->poses - 1) + k - 1] = error[i];
+        if (details_->moments != nullptr) add_step_moments(n, belief.covariance, error);
     }
 
 private:
     /// Errors and covariance in units of each step's own sigma. P is reported times a factor.
     void add_step_moments(int n, const Symmetric<Real, Layout::capacity>& P, const Real* error) {
-        const Real inverse_root = Real(1 / __builtin_sqrt(problem->filter.covariance_factor));
+        const Real inverse_root = Real(1 / __builtin_sqrt(problem_->filter.covariance_factor));
         Real inverse_sigma[Layout::capacity], standardised[Layout::capacity];
         for (int i = 0; i < n; ++i) {
             inverse_sigma[i] = Real(1) / sqrt(P.entry[i][i]);
             standardised[i] = error[i] * inverse_sigma[i] * inverse_root;
         }
-        add_moments(n, [&](int i, int j) { return P.entry[i][j]; }, standardised, inverse_sigma, moments);
+        details_->add_moments([&](int i, int j) { return P.entry[i][j]; }, standardised, inverse_sigma);
     }
 
-    int pair_count(const Layout& layout) const {
-        const int features = layout.features(), edges = problem->filter.edge_count;
-        return features + (edges_whitened(features, edges) ? edges : 0);
-    }
-
-    /// Takes the rows in one pair after the other, as the update does, on a copy.
+    /// Takes the rows of step k in, one pair after the other, as the update does, on a copy.
     template <class EdgeMeasurement, class Linearisation>
     [[gnu::noinline]] void whiten(int k, const Layout& layout, const Belief<Real, Layout::capacity>& belief,
                                   const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
                                   const Linearisation& linearised) {
         const int n = layout.size(), features = layout.features();
-        const FilterParameters& filter = problem->filter;
-        WhitenedInnovation<Real>& now = history_[k % (largest_lag + 1)];
+        const FilterParameters& filter = problem_->filter;
+        const auto keep = [&](int pair, const Vector2<Real>& white, Real observed) {
+            details_->products.keep(k, 2 * pair, white.x, observed);
+            details_->products.keep(k, 2 * pair + 1, white.y, observed);
+        };
         for (int i = 0; i < n; ++i) {
             update_.correction[i] = Real(0);
             for (int j = i; j < n; ++j) P_.entry[i][j] = belief.covariance.entry[i][j];
@@ -121,22 +110,21 @@ private:
         update_.positive_definite = all_lanes<Real>();
         for (int j = 0; j < features; ++j) {
             const Sighting<Real>& sighting = sightings[j];
-            now.observed[j] = Real(0);
-            now.pair[j] = {Real(0), Real(0)};
+            keep(j, {Real(0), Real(0)}, Real(0));
             if (!any(sighting.seen)) continue;
             const auto [rows, innovation] = linearised(j, sighting);
-            now.observed[j] = select(sighting.seen, Real(1), Real(0));
-            now.pair[j] = take(layout, rows, believed_variance(filter, sighting.sigma), sighting.seen, innovation,
-                               linearised.frame);
+            keep(j, take(layout, rows, believed_variance(filter, sighting.sigma), sighting.seen, innovation,
+                         linearised.frame),
+                 select(sighting.seen, Real(1), Real(0)));
         }
-        const int edges = pair_count(layout) - features;
+        const int edges = whitened_pairs(*problem_) - features;
         for (int e = 0; e < edges; ++e) {
             const int from = Layout::feature(filter.edges[e].from), to = Layout::feature(filter.edges[e].to);
-            now.observed[features + e] = Real(1);
-            now.pair[features + e] =
-                take(layout, EdgeRows<Layout, Real>{from, to}, Real(filter.variance_edge), all_lanes<Real>(),
-                     edge_measurement(e) - (point_at(belief.mean, to) - point_at(belief.mean, from)),
-                     Rotation<Real>{Real(1), Real(0)});
+            keep(features + e,
+                 take(layout, EdgeRows<Layout, Real>{from, to}, Real(filter.variance_edge), all_lanes<Real>(),
+                      edge_measurement(e) - (point_at(belief.mean, to) - point_at(belief.mean, from)),
+                      Rotation<Real>{Real(1), Real(0)}),
+                 Real(1));
         }
     }
 
@@ -159,24 +147,26 @@ private:
         return {select(used, white.x, Real(0)), select(used, white.y, Real(0))};
     }
 
-    [[gnu::noinline]] void correlate(int k, int pairs) {
-        const WhitenedInnovation<Real>& now = history_[k % (largest_lag + 1)];
-        for (int lag = 1; lag <= largest_lag && lag < k; ++lag) {
-            const WhitenedInnovation<Real>& before = history_[(k - lag) % (largest_lag + 1)];
-            Real sum = product_sum[lag - 1], count = product_count[lag - 1];
-            for (int p = 0; p < pairs; ++p) {
-                sum = fma(now.pair[p].y, before.pair[p].y, fma(now.pair[p].x, before.pair[p].x, sum));
-                count = fma(Real(2) * now.observed[p], before.observed[p], count);
-            }
-            product_sum[lag - 1] = sum;
-            product_count[lag - 1] = count;
-        }
-    }
-
+    const CommonView* problem_ = nullptr;
+    PackDetails<Real>* details_ = nullptr;
     const Truth<Real, Layout::feature_capacity>* truth_ = nullptr;
     Symmetric<Real, Layout::capacity> P_;
     Update<Real, Layout::capacity> update_;
-    WhitenedInnovation<Real> history_[largest_lag + 1];  ///< by pose, modulo its length
+};
+
+/// A trial of a built-in world as BatchOf takes it, watched by a Detail; `run` is missing.
+template <class WorldView, class Layout, class Number, class Work>
+struct WatchedTrial {
+    using View = WorldView;
+    using Real = Number;
+    struct Room {
+        Work work;
+        Detail<Layout, Real> detail;
+    };
+
+    static int column_count(const View&) { return credence::column_count; }
+    static int whitened_rows(const View& problem) { return 2 * whitened_pairs(problem); }
+    static std::size_t room(const View&) { return sizeof(Room); }
 };
 
 }  // namespace CREDENCE_TARGET

@@ -3,7 +3,8 @@
 // world.
 
 #include <credence/detail/batch.hpp>
-#include "engine/detail.hpp"
+#include <credence/detail/draws.hpp>
+#include "engine/pack_details.hpp"
 #include <credence/detail/lane.hpp>
 
 namespace credence {
@@ -124,87 +125,51 @@ Mask<Real> first_lanes(int count) {
     }
 }
 
-/// Adds the products of whitened innovations of the trials that count, [lags], to the running sums.
+/// Which trials a pack has: those from `first` on, in the lanes of `there`.
 template <class Real>
-void keep_products(int poses, const Real* product_sum, const Real* product_count, Mask<Real> counts, int trial,
-                   const Batch& batch) {
-    for (int lag = 0; lag < lag_count(poses); ++lag) {
-        const Real sum = select(counts, product_sum[lag], Real(0));
-        const int place = lag * octet + trial % octet;
-        double *sums = batch.product_sums + place, *squares = batch.product_square_sums + place;
-        double* counted = batch.product_counts + place;
-        store(load<Real>(sums) + sum, sums);
-        store(fma(sum, sum, load<Real>(squares)), squares);
-        store(load<Real>(counted) + select(counts, product_count[lag], Real(0)), counted);
-    }
-}
+struct PackPlace {
+    std::int64_t first = 0;
+    Mask<Real> there{};
+};
 
 /// Simulates packs of trials; the last one may go beyond the batch, into places of its octet that are never read.
 ///
-/// `Trial` is a world's: the types View (a CommonView), Layout, Real and Workspace, `truncate(View)`, and
-/// `run(view, draws, observer, workspace, columns, series)`, one pack of trials of one arm.
+/// `Trial` is a world's: the types View (a CommonView) and Real; `truncate(View)`; the numbers of its columns, of which
+/// the last two are those of its status, and of an innovation's rows, `column_count(View)` and `whitened_rows(View)`;
+/// `room(View)`, the bytes that a pack needs beside these; and `run(view, draws, place, room, details, columns,
+/// series)`, one pack of trials of one arm.
 template <class Trial>
 struct BatchOf {
     using View = typename Trial::View;
-    using Layout = typename Trial::Layout;
     using Real = typename Trial::Real;
 
-    /// What a thread needs beside the unfolded series.
-    struct Room {
-        typename Trial::Workspace trial;
-        Detail<Layout, Real> detail;
-    };
-
-    /// Numbers behind the Room: the unfolded series, and of one pack the errors [n, K - 1] and the moments.
-    static std::size_t error_cells(const CommonView& problem) {
-        return static_cast<std::size_t>(problem.state_size) * static_cast<std::size_t>(problem.poses - 1);
-    }
-    static std::size_t moment_cells(const CommonView& problem) {
-        return static_cast<std::size_t>(moment_count(problem.state_size, 0));
-    }
-    static std::size_t workspace_size(const CommonView& problem) {
+    static std::size_t workspace_size(const View& problem) {
         const Unfolded<Real> unfolded(nullptr, problem);
-        const std::size_t all_series = static_cast<std::size_t>(unfolded.cells * unfolded.capacity);
-        return sizeof(Room) + (all_series + error_cells(problem) + moment_cells(problem)) * sizeof(Real);
+        return Trial::room(problem) + (static_cast<std::size_t>(Trial::column_count(problem)) +
+                                       PackDetails<Real>::room(problem, Trial::whitened_rows(problem)) +
+                                       static_cast<std::size_t>(unfolded.cells * unfolded.capacity)) * sizeof(Real);
     }
 
     static void simulate(const View& problem, const Trial& trial, const Batch& batch) {
-        auto& room = *static_cast<Room*>(batch.workspace);
-        Real* errors = reinterpret_cast<Real*>(&room + 1);
-        Real* moments = errors + error_cells(problem);
-        Unfolded<Real> unfolded(moments + moment_cells(problem), problem);
-        Detail<Layout, Real>& detail = room.detail;
-        detail.on = batch.errors != nullptr;
-        detail.problem = &problem;
-        detail.errors = errors;
-        detail.moments = detail.on && moment_cells(problem) > 0 ? moments : nullptr;
+        const int rows = Trial::whitened_rows(problem), count = Trial::column_count(problem);
+        Real* columns = reinterpret_cast<Real*>(static_cast<std::byte*>(batch.workspace) + Trial::room(problem));
+        Real* room = columns + count;
+        PackDetails<Real> details(problem, rows, batch, room);
+        Unfolded<Real> unfolded(room + PackDetails<Real>::room(problem, rows), problem);
         for (int i = 0; i < batch.trials; i += lanes<Real>) {
-            const KeyedDraws<Real> draws(batch.root_seed, trials_from<Real>(batch.first_trial + i),
-                                         Trial::truncate(problem));
-            Real columns[column_count];
+            const PackPlace<Real> place{batch.first_trial + i, first_lanes<Real>(batch.trials - i)};
+            const KeyedDraws<Real> draws(batch.root_seed, trials_from<Real>(place.first), Trial::truncate(problem));
             Real* all_series = unfolded.next();
-            trial.run(problem, draws, detail, room.trial, columns, all_series);
-            const Mask<Real> counts = both(columns[column_status] == Real(0), first_lanes<Real>(batch.trials - i));
-            double* to = batch.columns + i / octet * column_count * octet + i % octet;
-            for (int c = 0; c < column_count; ++c) store(columns[c], to + c * octet);
+            details.start();
+            trial.run(problem, draws, place, batch.workspace, details, columns, all_series);
+            const Mask<Real> counts = both(columns[count - 2] == Real(0), place.there);
+            double* to = batch.columns + i / octet * count * octet + i % octet;
+            for (int c = 0; c < count; ++c) store(columns[c], to + c * octet);
             copy_out(all_series, problem.poses - 1, i, batch, batch.nees);
-            if (detail.on) keep_detail(problem, detail, counts, i, batch);
-            if (detail.moments != nullptr) keep_moments(problem, detail.moments, all_series, i, batch);
+            details.keep(all_series, counts, i, batch);
             unfolded.keep(counts);
             if (unfolded.full() || i + lanes<Real> >= batch.trials) fold(unfolded, problem, batch);
         }
-    }
-
-    /// A pack's numbers [cells] to their places in [cells, octets, 8].
-    static void copy_out(const Real* from, int cells, int trial, const Batch& batch, double* to) {
-        const int padded = (batch.trials + octet - 1) / octet * octet;
-        for (int cell = 0; cell < cells; ++cell) store(from[cell], to + cell * padded + trial);
-    }
-
-    static void keep_detail(const CommonView& problem, const Detail<Layout, Real>& detail, Mask<Real> counts,
-                            int trial, const Batch& batch) {
-        copy_out(detail.errors, problem.state_size * (problem.poses - 1), trial, batch, batch.errors);
-        keep_products(problem.poses, detail.product_sum, detail.product_count, counts, trial, batch);
     }
 };
 

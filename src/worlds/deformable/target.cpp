@@ -4,6 +4,7 @@
 
 #include "slam/estimators/estimators.hpp"
 #include "worlds/simulate.hpp"
+#include "engine/detail.hpp"
 #include "engine/simulate_batch.hpp"
 #include "slam/trial/trial.hpp"
 
@@ -13,18 +14,17 @@ inline namespace CREDENCE_TARGET {
 namespace {
 
 /// A trial in the deforming world.
-template <class StateLayout, class Number, class Tag = EstimatorTag<KalmanFilter>>
-struct DeformableTrial {
-    using View = ProblemView;
-    using Layout = StateLayout;
-    using Real = Number;
-    using Workspace = credence::Workspace<Layout, Real, typename Tag::template type<Layout, Real>>;
-
+template <class Layout, class Real, class Tag = EstimatorTag<KalmanFilter>>
+struct DeformableTrial
+    : WatchedTrial<ProblemView, Layout, Real, Workspace<Layout, Real, typename Tag::template type<Layout, Real>>> {
     Controller controller;
 
-    static double truncate(const View& problem) { return problem.world.truncate; }
-    void run(const View& problem, const KeyedDraws<Real>& draws, Detail<Layout, Real>& detail, Workspace& work,
-             Real* columns, Real* all_series) const {
+    explicit DeformableTrial(Controller one) : controller(one) {}
+    static double truncate(const ProblemView& problem) { return problem.world.truncate; }
+    void run(const ProblemView& problem, const KeyedDraws<Real>& draws, const PackPlace<Real>&, void* room,
+             PackDetails<Real>& details, Real* columns, Real* all_series) const {
+        auto& [work, detail] = *static_cast<typename DeformableTrial::Room*>(room);
+        detail.watch(problem, details);
         run_trial(problem, controller, draws, detail, work, columns, all_series);
     }
 };
@@ -69,7 +69,7 @@ auto with_trial(const ProblemView& problem, Estimator estimator, const Use& use)
 void simulate(const ProblemView& problem, const Arm& arm, const Batch& batch) {
     with_trial(problem, arm.estimator, [&](auto type) {
         using Trial = typename decltype(type)::type;
-        BatchOf<Trial>::simulate(problem, Trial{arm.controller}, batch);
+        BatchOf<Trial>::simulate(problem, Trial(arm.controller), batch);
     });
 }
 

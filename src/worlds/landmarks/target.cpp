@@ -3,6 +3,7 @@
 #include "slam/estimators/estimators.hpp"
 #include "worlds/landmarks/trial.hpp"
 #include "worlds/simulate.hpp"
+#include "engine/detail.hpp"
 #include "engine/simulate_batch.hpp"
 
 namespace credence {
@@ -10,17 +11,19 @@ inline namespace CREDENCE_TARGET {
 
 namespace {
 
+using Real = Pack<CREDENCE_LANES>;
+using StateLayout = Layout<Process::heading, any_count>;
+
 /// A trial among landmarks.
 template <class Tag>
-struct LandmarkTrial {
-    using View = LandmarkView;
-    using Layout = credence::Layout<Process::heading, any_count>;
-    using Real = Pack<CREDENCE_LANES>;
-    using Workspace = CommonWorkspace<Layout, Real, typename Tag::template type<Layout, Real>>;
-
-    static constexpr double truncate(const View&) { return __builtin_inf(); }
-    void run(const View& problem, const KeyedDraws<Real>& draws, Detail<Layout, Real>& detail, Workspace& work,
-             Real* columns, Real* all_series) const {
+struct LandmarkTrial
+    : WatchedTrial<LandmarkView, StateLayout, Real,
+                   CommonWorkspace<StateLayout, Real, typename Tag::template type<StateLayout, Real>>> {
+    static constexpr double truncate(const LandmarkView&) { return __builtin_inf(); }
+    void run(const LandmarkView& problem, const KeyedDraws<Real>& draws, const PackPlace<Real>&, void* room,
+             PackDetails<Real>& details, Real* columns, Real* all_series) const {
+        auto& [work, detail] = *static_cast<typename LandmarkTrial::Room*>(room);
+        detail.watch(problem, details);
         run_trial(problem, draws, detail, work, columns, all_series);
     }
 };

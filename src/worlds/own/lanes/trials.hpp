@@ -5,9 +5,9 @@
 //   e  error [n], P  covariance [n, n]; nu  innovation [m], S  its covariance [m, m]
 
 #include <credence/detail/draws.hpp>
+#include "engine/simulate_batch.hpp"
 #include "slam/trial/step_evaluation.hpp"
 #include "worlds/own/lanes/factor.hpp"
-#include "worlds/own/lanes/products.hpp"
 #include "worlds/own/lanes/view.hpp"
 
 namespace credence {
@@ -35,24 +35,18 @@ public:
     static std::size_t room(const OwnView& view) {
         const auto n = static_cast<std::size_t>(view.state_size), m = static_cast<std::size_t>(view.largest_innovation);
         const std::size_t most = n > m ? n : m;
-        return (most + 2) * most + LaneProducts<Real>::room(view.largest_innovation) +
-               static_cast<std::size_t>(view.own_column_count);
+        return (most + 2) * most + static_cast<std::size_t>(view.own_column_count);
     }
 
-    Outcome<Real> outcome;
-    LaneProducts<Real> products;
-
-    /// `all_series` [series_count, K - 1], `errors` [n, K - 1] and `moments` [own_moment_count] are filled; the last
-    /// two may be null.
-    PackOfTrials(const PackOfTrials&) = delete;
-    PackOfTrials& operator=(const PackOfTrials&) = delete;
-    PackOfTrials(const OwnView& view, const KeyedDraws<Real>& draws, Mask<Real> there, Real* room, Real* all_series,
-                 Real* errors, Real* moments)
-        : view_(view), draws_(draws), there_(there), all_series_(all_series), errors_(errors), moments_(moments) {
+    /// `all_series` [series_count, K - 1] and `details` are filled.
+    PackOfTrials(const OwnView& view, const KeyedDraws<Real>& draws, const PackPlace<Real>& place, Real* room,
+                 PackDetails<Real>& details, Real* all_series)
+        : view_(view), draws_(draws), there_(place.there), all_series_(all_series), details_(details) {
+        first_trial = place.first;
         world = view.world;
         arm_name = view.arm_name;
         arm = view.arm;
-        trials = lane_count(there);
+        trials = lane_count(there_);
         poses = view.poses;
         state_size = view.state_size;
         largest_innovation = view.largest_innovation;
@@ -61,37 +55,22 @@ public:
         L_ = room;
         e_ = L_ + most * most;
         observed_ = e_ + most;
-        products.start(largest_innovation, observed_ + most);
-        Real* own = observed_ + most + LaneProducts<Real>::room(largest_innovation);
+        Real* own = observed_ + most;
         for (int c = 0; c < view.own_column_count; ++c) own[c] = Real(0);
         own_columns = reinterpret_cast<double*>(own);
         LanePack::all_series = reinterpret_cast<const double*>(all_series_);
-        for (int i = 0; moments_ != nullptr && i < own_moment_count(state_size); ++i) moments_[i] = Real(0);
         normal = draw_normal;
         uniform = draw_uniform;
         step = take_step;
     }
 
-    /// The trials of the pack that have not failed and, after note_lost(), are not lost.
-    Mask<Real> counts() const { return both(there_, outcome.status == Real(0)); }
+    PackOfTrials(const PackOfTrials&) = delete;
+    PackOfTrials& operator=(const PackOfTrials&) = delete;
 
-    /// After the last step: notes the trials of which a column of whole numbers is none of 32 bits.
-    void note_columns() {
-        constexpr double largest = 2147483647,
-                         rounding = 6755399441055744;  // 1.5 * 2^52 leaves no place for a fraction
-        for (int c = 0; c < view_.own_column_count; ++c) {
-            if (!view_.whole[c]) continue;
-            const Real value = load<Real>(own_columns + c * lanes<Real>);
-            const Mask<Real> is_whole = value + Real(rounding) - Real(rounding) == value;
-            outcome.note(negated(both(is_whole, absolute(value) <= Real(largest))), Status::non_finite, steps);
-        }
-    }
-
-    /// After the last step: notes the trials that are lost.
-    void note_lost() { outcome.note_lost(nees_ratio()); }
-
-    /// Writes the columns [column_count], in the order of own_columns().
-    void columns(Real* to) const {
+    /// After the last step: writes the columns [column_count], in the order of own_columns().
+    void write_columns(Real* to) {
+        note_columns();
+        outcome_.note_lost(nees_ratio());
         const int steps_of_trial = poses - 1;
         const auto write = [&](Real value) { *to++ = value; };
         write(all_series_[(view_.variance + 1) * steps_of_trial - 1]);
@@ -102,11 +81,26 @@ public:
         write(total(view_.variance) / Real(steps_of_trial));
         write(Real(0.5) *
               (Real(state_size * log_two_pi) + (determinants_.log() + total(0)) / Real(steps_of_trial)));
-        write(outcome.status);
-        write(outcome.pose);
+        write(outcome_.status);
+        write(outcome_.pose);
     }
 
 private:
+    /// The trials of the pack that have not failed.
+    Mask<Real> going_on() const { return both(there_, outcome_.status == Real(0)); }
+
+    /// Notes the trials of which a column of whole numbers is none of 32 bits.
+    void note_columns() {
+        constexpr double largest = 2147483647,
+                         rounding = 6755399441055744;  // 1.5 * 2^52 leaves no place for a fraction
+        for (int c = 0; c < view_.own_column_count; ++c) {
+            if (!view_.whole[c]) continue;
+            const Real value = load<Real>(own_columns + c * lanes<Real>);
+            const Mask<Real> is_whole = value + Real(rounding) - Real(rounding) == value;
+            outcome_.note(negated(both(is_whole, absolute(value) <= Real(largest))), Status::non_finite, steps);
+        }
+    }
+
     CREDENCE_FLAT static void draw_normal(const LanePack& pack, int source, int pose, int index, double* draw) {
         const Vector2<Real> pair =
             static_cast<const PackOfTrials&>(pack).draws_.normal(static_cast<Source>(source), pose, index);
@@ -125,7 +119,7 @@ private:
         if (view_.largest_innovation > 0) evaluate_innovation(step);
         note_figures();
         ++steps;
-        return any(counts());
+        return any(going_on());
     }
 
     /// The sum of a series over the steps.
@@ -138,7 +132,7 @@ private:
     Real nees_ratio() const { return total(0) / Real(poses - 1) / Real(state_size); }
 
     Real* series(int f) { return all_series_ + f * (poses - 1) + steps; }
-    void note(Mask<Real> happened, Status what) { outcome.note(happened, what, steps + 1); }
+    void note(Mask<Real> happened, Status what) { outcome_.note(happened, what, steps + 1); }
 
     static Real observed(Real nu) { return select(nu == nu, Real(1), Real(0)); }
 
@@ -175,9 +169,9 @@ private:
         for (int j = 0; j < state_size; ++j) {
             const Real e = load<Real>(step.error + j * lanes<Real>);
             *series(view_.standardised_error + j) = e / sqrt(P.at(j, j));
-            if (errors_ != nullptr) errors_[j * (poses - 1) + steps] = e;
+            if (details_.on) details_.errors[j * (poses - 1) + steps] = e;
         }
-        if (moments_ != nullptr) add_step_moments(P);
+        if (details_.moments != nullptr) add_step_moments(P);
     }
 
     /// `component(i)` is the i-th component of the group, and `of_group` its part of P.
@@ -205,7 +199,7 @@ private:
             standardised[j] = *series(view_.standardised_error + j);
             inverse_sigma[j] = Real(1) / sqrt(P.at(j, j));
         }
-        add_moments(state_size, [&](int i, int j) { return P.at(j, i); }, standardised, inverse_sigma, moments_);
+        details_.add_moments([&](int i, int j) { return P.at(j, i); }, standardised, inverse_sigma);
     }
 
     void evaluate_innovation(const LaneStep& step) {
@@ -220,19 +214,19 @@ private:
             step.rows > 0
                 ? whiten_checked(ObservedRows<Real>{{step.S, step.rows}, observed_}, step.rows).squared_norm
                 : Real(0);
-        if (errors_ == nullptr) return;
+        if (!details_.on) return;
         for (int i = 0; i < largest_innovation; ++i) {
             const bool is_row = i < step.rows;
-            products.keep(steps, i, is_row ? e_[i] : Real(0), is_row ? observed_[i] : Real(0));
+            details_.products.keep(steps, i, is_row ? e_[i] : Real(0), is_row ? observed_[i] : Real(0));
         }
-        products.correlate(steps);
+        details_.products.correlate(steps);
     }
 
     /// e' M^-1 e of e_ [n], which becomes L^-1 e; notes where M is not positive definite.
     template <class Matrix>
     Whitened<Real> whiten_checked(const Matrix& M, int n) {
         const Whitened<Real> whitened = whiten_any<Real>(M, n, L_, e_);
-        const Mask<Real> open = both(counts(), negated(whitened.sound));
+        const Mask<Real> open = both(going_on(), negated(whitened.sound));
         if (any(open)) note(look_closer(M, n, open), Status::covariance_not_positive_definite);
         return whitened;
     }
@@ -268,8 +262,9 @@ private:
     const OwnView& view_;
     const KeyedDraws<Real>& draws_;
     Mask<Real> there_;  ///< lanes that have a trial
+    Outcome<Real> outcome_;
     Real* all_series_;
-    Real *errors_, *moments_;
+    PackDetails<Real>& details_;
     Real *L_, *e_, *observed_;
     ScaledProduct<Real> determinants_;  ///< of P, the product over the steps
 };
