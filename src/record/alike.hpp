@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "worlds/own/step.hpp"
+#include "record/step.hpp"
 
 namespace credence {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Parts of the check of a step.
 
-#include "worlds/own/step.hpp"
+#include "record/step.hpp"
 
 #include <string>
 #include <vector>

@@ -1,7 +1,7 @@
 #pragma once
 // Checks the steps of a record, in which components may enter and leave the state.
 
-#include "worlds/own/step.hpp"
+#include "record/step.hpp"
 
 #include <string>
 #include <vector>

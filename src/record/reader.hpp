@@ -3,7 +3,7 @@
 
 #include "record/known.hpp"
 #include "record/layout/layout.hpp"
-#include "worlds/own/step.hpp"
+#include "record/step.hpp"
 
 #include <cstdint>
 #include <functional>

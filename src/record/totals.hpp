@@ -13,8 +13,8 @@
 #include "record/presence.hpp"
 #include "record/reader.hpp"
 #include "record/row_products.hpp"
-#include "worlds/own/moments.hpp"
-#include "worlds/own/step.hpp"
+#include "record/moments.hpp"
+#include "record/step.hpp"
 
 namespace credence {
 

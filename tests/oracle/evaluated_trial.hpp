@@ -7,8 +7,8 @@
 #include "scenario/state_series.hpp"
 #include "worlds/own/columns.hpp"
 #include "oracle/lag_products.hpp"
-#include "worlds/own/moments.hpp"
-#include "worlds/own/step.hpp"
+#include "record/moments.hpp"
+#include "record/step.hpp"
 #include "worlds/own/trial_ends.hpp"
 #include <credence/detail/draws.hpp>
 #include <credence/detail/own_simulation.hpp>

@@ -6,7 +6,7 @@
 #include "record_support.hpp"
 
 #include "statistics/moments/conditioning.hpp"
-#include "worlds/own/step.hpp"
+#include "record/step.hpp"
 
 #include <credence/report.hpp>
 

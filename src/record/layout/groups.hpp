@@ -2,7 +2,7 @@
 // The attributes of a record that name component groups, groups of innovation rows, and components.
 
 #include "record/source.hpp"
-#include "worlds/own/step.hpp"
+#include "record/step.hpp"
 
 #include <string>
 #include <vector>

@@ -3,7 +3,7 @@
 
 #include "record/manifold.hpp"
 #include "record/source.hpp"
-#include "worlds/own/step.hpp"
+#include "record/step.hpp"
 
 #include <optional>
 #include <vector>

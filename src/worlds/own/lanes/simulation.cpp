@@ -3,10 +3,10 @@
 #include <credence/detail/draws.hpp>
 #include <credence/detail/lanes_of.hpp>
 #include "numeric/chi_square.hpp"
+#include "numeric/positive_definite.hpp"
 #include "scenario/state_series.hpp"
 #include "worlds/own/lanes/one_by_one.hpp"
 #include "worlds/own/lanes/recorder.hpp"
-#include "worlds/own/step.hpp"
 #include "worlds/own/trial_ends.hpp"
 #include "worlds/simulate.hpp"
 

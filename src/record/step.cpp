@@ -1,47 +1,12 @@
-#include "worlds/own/step.hpp"
+#include "record/step.hpp"
 
 #include <credence/detail/elementary.hpp>
+#include "numeric/positive_definite.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 namespace credence {
-
-namespace {
-
-enum class Definiteness { positive, singular, indefinite };
-
-/// The smallest eigenvalue of the correlation matrix, which does not depend on units.
-double smallest_eigenvalue(const Eigen::MatrixXd& S) {
-    const Eigen::VectorXd size = S.diagonal().cwiseAbs().cwiseSqrt();
-    const Eigen::VectorXd scale = (size.array() > 0).select(size.cwiseInverse(), 1.0);
-    const Eigen::MatrixXd correlation = scale.asDiagonal() * S * scale.asDiagonal();
-    return eigenvalues(correlation).minCoeff();
-}
-
-/// Rounding alone, of values with the relative spacing `epsilon`, makes up to 2 n epsilon of an eigenvalue of 0.
-Definiteness definiteness(double smallest, Eigen::Index n, double epsilon) {
-    const double zero = 2 * static_cast<double>(n) * epsilon;
-    if (smallest > zero) return Definiteness::positive;
-    return smallest < -zero ? Definiteness::indefinite : Definiteness::singular;
-}
-
-/// Factors S; what is wrong with it, where it is not positive definite. Pivots that are not small need no eigenvalues.
-/// `rounding` becomes the bound on the relative error of nu'S^-1nu [statistics/moments/conditioning.hpp]; 0 for such
-/// pivots.
-std::string factor(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, CholeskyFactor& factor,
-                   double& rounding) {
-    rounding = 0;
-    const bool factored = factor.compute(S);
-    if (factored && factor.pivots_exceed(10 * std::sqrt(epsilon), S)) return {};
-    const double smallest = smallest_eigenvalue(S);
-    const Definiteness found = definiteness(smallest, S.rows(), epsilon);
-    rounding = static_cast<double>(S.rows()) * epsilon / smallest;
-    if (factored && found == Definiteness::positive) return {};
-    return found == Definiteness::singular ? "is singular" : "is not positive definite";
-}
-
-}  // namespace
 
 bool CheckedStep::whole(const ComponentGroup& group) const {
     for (int i = 0; i < group.count && !here.empty(); ++i)
@@ -52,12 +17,6 @@ bool CheckedStep::whole(const ComponentGroup& group) const {
 std::string component_name(const RecordShape& shape, int j) {
     return shape.components.empty() ? std::string("x") + std::to_string(j)
                                     : shape.components[static_cast<std::size_t>(j)].name;
-}
-
-bool is_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix, double epsilon) {
-    CholeskyFactor any;
-    double rounding = 0;
-    return factor(matrix, epsilon, any, rounding).empty();
 }
 
 StateSeries record_series(const RecordShape& shape) {
@@ -114,7 +73,7 @@ void StepEvaluator::set_size_unknown(std::size_t b, double* all_series) {
 template <class Matrix, class Vector>
 std::string StepEvaluator::evaluate_part(std::size_t b, const Matrix& P, const Vector& e, double epsilon,
                                       double* all_series) {
-    const std::string wrong = factor(P, epsilon, factors_[b], rounding_[b]);
+    const std::string wrong = factor_checked(P, epsilon, factors_[b], rounding_[b]);
     if (!wrong.empty()) return "covariance " + wrong;
     solved_[b] = e;
     factors_[b].whiten(solved_[b]);
@@ -126,19 +85,23 @@ std::string StepEvaluator::evaluate_part(std::size_t b, const Matrix& P, const V
     return {};
 }
 
-/// Copies the part of e, and of a joint P, that belongs to the group's components in the state.
-void StepEvaluator::gather(const ComponentGroup& group, const CheckedStep& step) {
+/// The members of the group that are in the state; of the whole state these may be fewer than it has.
+void StepEvaluator::choose(const ComponentGroup& group, const CheckedStep& step) {
     members_.clear();
     for (int i = 0; i < group.count; ++i)
         if (const int j = group.component(i); step.here.empty() || step.here[static_cast<std::size_t>(j)])
             members_.push_back(j);
+}
+
+/// Copies the part of e and, where there is one, of P that the chosen members have.
+void StepEvaluator::gather(const Eigen::VectorXd& e, const Eigen::MatrixXd& P) {
     const auto d = static_cast<Eigen::Index>(members_.size());
     part_e_.resize(d);
-    part_P_.resize(d, step.P.size() == 0 ? 0 : d);
+    part_P_.resize(d, P.size() == 0 ? 0 : d);
     for (Eigen::Index i = 0; i < d; ++i) {
-        part_e_(i) = step.e(members_[static_cast<std::size_t>(i)]);
+        part_e_(i) = e(members_[static_cast<std::size_t>(i)]);
         for (Eigen::Index j = 0; j < part_P_.cols(); ++j)
-            part_P_(i, j) = step.P(members_[static_cast<std::size_t>(i)], members_[static_cast<std::size_t>(j)]);
+            part_P_(i, j) = P(members_[static_cast<std::size_t>(i)], members_[static_cast<std::size_t>(j)]);
     }
 }
 
@@ -151,11 +114,13 @@ std::string StepEvaluator::evaluate_group(std::size_t b, const CheckedStep& step
                 return evaluate_part(b, step.P.block(group.first, group.first, group.count, group.count),
                                   step.e.segment(group.first, group.count), shape_.covariance_epsilon, all_series);
             if (!whole && b != 0) break;
-            gather(group, step);
+            choose(group, step);
+            gather(step.e, step.P);
             return evaluate_part(b, part_P_, part_e_, shape_.covariance_epsilon, all_series);
         case GroupSource::own:
             if (!whole) break;
-            gather(group, step);
+            choose(group, step);
+            gather(step.e, step.P);
             return evaluate_part(b, step.own[b], part_e_, shape_.group_epsilons[b], all_series);
         case GroupSource::variances:
             if (!whole && b != 0) break;
@@ -219,7 +184,7 @@ std::string StepEvaluator::evaluate_innovation(const CheckedStep& step, double* 
     all_series[places_.rows] = static_cast<double>(step.rows.size());
     innovation_rounding_ = 0;
     if (step.rows.empty()) return {};
-    const std::string wrong = factor(step.S, shape_.innovation_epsilon, innovation_factor_, innovation_rounding_);
+    const std::string wrong = factor_checked(step.S, shape_.innovation_epsilon, innovation_factor_, innovation_rounding_);
     if (!wrong.empty()) return "innovation covariance " + wrong;
     white_ = step.nu;
     innovation_factor_.whiten(white_);
@@ -240,15 +205,9 @@ std::string StepEvaluator::evaluate_row_group(std::size_t g, const CheckedStep& 
     const auto m = static_cast<Eigen::Index>(members_.size());
     all_series[places_.rows + 2 * (g + 1)] = static_cast<double>(m);
     if (m == 0) return {};
-    part_e_.resize(m);
-    part_P_.resize(m, m);
-    for (Eigen::Index i = 0; i < m; ++i) {
-        part_e_(i) = step.nu(members_[static_cast<std::size_t>(i)]);
-        for (Eigen::Index j = 0; j < m; ++j)
-            part_P_(i, j) = step.S(members_[static_cast<std::size_t>(i)], members_[static_cast<std::size_t>(j)]);
-    }
+    gather(step.nu, step.S);
     double rounding = 0;  // no more than that of all rows
-    const std::string wrong = factor(part_P_, shape_.innovation_epsilon, innovation_factor_, rounding);
+    const std::string wrong = factor_checked(part_P_, shape_.innovation_epsilon, innovation_factor_, rounding);
     if (!wrong.empty()) return "innovation covariance " + wrong;
     innovation_factor_.whiten(part_e_);
     all_series[places_.nis + 2 * (g + 1)] = part_e_.squaredNorm();

@@ -114,9 +114,6 @@ StateSeries record_series(const RecordShape& shape);
 /// Whether every series of a step is a number whose square, over all steps, still adds up.
 bool figures_add_up(const double* all_series, std::size_t count);
 
-/// Whether a symmetric matrix, of values with the relative spacing `epsilon`, is positive definite beyond rounding.
-bool is_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix, double epsilon);
-
 /// Turns checked steps into series. Keeps its matrices from step to step.
 class StepEvaluator {
 public:
@@ -146,7 +143,8 @@ private:
     template <class Matrix, class Vector>
     std::string evaluate_part(std::size_t b, const Matrix& P, const Vector& e, double epsilon, double* all_series);
     std::string evaluate_variances(std::size_t b, const CheckedStep& step, double* all_series);
-    void gather(const ComponentGroup& group, const CheckedStep& step);
+    void choose(const ComponentGroup& group, const CheckedStep& step);
+    void gather(const Eigen::VectorXd& e, const Eigen::MatrixXd& P);
     void standardise(const CheckedStep& step, double* all_series);
     std::string evaluate_innovation(const CheckedStep& step, double* all_series, double* whitened);
     std::string evaluate_row_group(std::size_t g, const CheckedStep& step, double* all_series);
