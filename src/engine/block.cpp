@@ -1,40 +1,18 @@
 #include <credence/detail/block.hpp>
 
+#include "engine/octets.hpp"
 #include "numeric/chi_square.hpp"
 
 #include <algorithm>
 #include <chrono>
-#include <cstddef>
 #include <limits>
 #include <memory>
 #include <mutex>
-#include <new>
 #include <numeric>
 
 namespace credence {
 
 namespace {
-
-/// Room for a unit, from a 64-byte boundary on as a pack of lanes wants it. It is kept from block to block, and what a
-/// trial does not touch of it is never paid for.
-class WorkRoom {
-public:
-    void* of_size(std::size_t size) {
-        if (size > size_) {
-            bytes_.reset(new (alignment) std::byte[size]);
-            size_ = size;
-        }
-        return bytes_.get();
-    }
-
-private:
-    static constexpr std::align_val_t alignment{64};
-    struct Release {
-        void operator()(std::byte* bytes) const { ::operator delete[](bytes, alignment); }
-    };
-    std::unique_ptr<std::byte[], Release> bytes_;
-    std::size_t size_ = 0;
-};
 
 /// Adds up the eight running sums of each cell, in order.
 std::vector<double> added_up(const std::vector<double>& octets) {
@@ -60,57 +38,6 @@ void store_columns(const std::vector<Column>& declared, const std::vector<double
         for (std::size_t c = 0; c < count; ++c) arm.columns[c * trials + trial] = own[c];
     }
 }
-
-/// What a unit fills, eight trials next to each other. Kept from block to block; what a unit adds to begins at 0.
-struct Octets {
-    std::size_t trials = 0, padded = 0, steps = 0, components = 0, moment_count = 0;
-    bool detail = false;
-    std::vector<double> columns, sums, square_sums, run_square_sums, nees;
-    std::vector<std::int32_t> covered;
-    std::vector<double> errors, moments, product_sums, product_square_sums, product_counts;
-
-    void prepare(const SimulationShape& shape, std::size_t count, bool detailed) {
-        const auto all_series = static_cast<std::size_t>(shape.series_count);
-        const auto blocks = static_cast<std::size_t>(shape.group_count);
-        trials = count;
-        padded = (count + octet - 1) / octet * octet;
-        steps = static_cast<std::size_t>(shape.poses - 1);
-        components = static_cast<std::size_t>(shape.state_size);
-        detail = detailed;
-        columns.resize(padded * static_cast<std::size_t>(shape.column_count));
-        nees.resize(steps * padded);
-        sums.assign(all_series * steps * octet, 0);
-        square_sums.assign(sums.size(), 0);
-        run_square_sums.assign(all_series * octet, 0);
-        covered.assign(blocks * steps * coverage_level_count, 0);
-        if (!detail) {
-            errors = moments = std::vector<double>();  // much room, and seldom wanted; {} would keep it
-            return;
-        }
-        errors.resize(components * steps * padded);
-        moment_count = static_cast<std::size_t>(credence::moment_count(shape.state_size, shape.group_count));
-        moments.resize(moment_count * padded);
-        for (auto* products : {&product_sums, &product_square_sums, &product_counts})
-            products->assign(static_cast<std::size_t>(lag_count(shape.poses)) * octet, 0);
-    }
-
-    Batch batch(std::uint64_t root_seed, std::int64_t first_trial, void* workspace) {
-        Batch batch{root_seed, first_trial, static_cast<int>(trials)};
-        batch.columns = columns.data();
-        batch.sums = sums.data();
-        batch.square_sums = square_sums.data();
-        batch.run_square_sums = run_square_sums.data();
-        batch.covered = covered.data();
-        batch.nees = nees.data();
-        batch.errors = detail ? errors.data() : nullptr;
-        batch.moments = detail ? moments.data() : nullptr;
-        batch.product_sums = product_sums.data();
-        batch.product_square_sums = product_square_sums.data();
-        batch.product_counts = product_counts.data();
-        batch.workspace = workspace;
-        return batch;
-    }
-};
 
 /// How the trials ended: [trials].
 std::vector<Status> statuses_of(const std::vector<Column>& declared, const ArmBlock& arm, std::size_t trials) {
@@ -157,29 +84,23 @@ void store_details(const Octets& from, const std::vector<Status>& statuses, ArmB
     arm.product_counts = added_up(from.product_counts);
 }
 
-/// The memory in which one thread computes a block.
-struct Workspace {
-    Octets octets;
-    WorkRoom room;
-};
-
 /// The workspaces of all threads, kept from block to block. (These are not thread_local objects: glibc ends the process
 /// where it cannot allocate the record of a thread_local destructor.)
 class Workspaces {
 public:
     /// A workspace that no other thread has until the returned pointer is destroyed. Throws std::bad_alloc.
     auto take() {
-        const auto put_back = [this](Workspace* workspace) {
+        const auto put_back = [this](BlockMemory* workspace) {
             const std::lock_guard lock(mutex_);
             free_.emplace_back(workspace);  // within the capacity that take() has reserved
         };
         const std::lock_guard lock(mutex_);
         if (free_.empty()) {
             free_.reserve(made_ + 1);
-            free_.push_back(std::make_unique<Workspace>());
+            free_.push_back(std::make_unique<BlockMemory>());
             ++made_;
         }
-        std::unique_ptr<Workspace, decltype(put_back)> taken(free_.back().release(), put_back);
+        std::unique_ptr<BlockMemory, decltype(put_back)> taken(free_.back().release(), put_back);
         free_.pop_back();
         return taken;
     }
@@ -193,7 +114,7 @@ public:
 private:
     std::mutex mutex_;
     std::size_t made_ = 0;
-    std::vector<std::unique_ptr<Workspace>> free_;
+    std::vector<std::unique_ptr<BlockMemory>> free_;
 };
 
 /// Never destroyed, because a thread may still compute when the process ends.
@@ -202,13 +123,20 @@ Workspaces& workspaces() {
     return all;
 }
 
+}  // namespace
+
+bool detailed(const SimulationShape& shape, std::int64_t index) {
+    static_assert(block_size == 256, "detailed_trials counts whole blocks");
+    return index < detailed_trials(shape.poses - 1, shape.state_size) / block_size;
+}
+
 ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& columns, std::size_t a,
-                 std::uint64_t root_seed, std::int64_t index, int trials, Workspace& workspace) {
+                 std::uint64_t root_seed, std::int64_t index, int trials, BlockMemory& memory) {
     const auto start = std::chrono::steady_clock::now();
     const SimulationShape& shape = simulation.shape();
-    Octets& octets = workspace.octets;
+    Octets& octets = memory.octets;
     octets.prepare(shape, static_cast<std::size_t>(trials), detailed(shape, index));
-    void* room = workspace.room.of_size(simulation.workspace_size(a));
+    void* room = memory.room.of_size(simulation.workspace_size(a));
     simulation.simulate(a, octets.batch(root_seed, index * block_size, room));
     ArmBlock arm;
     arm.sums = added_up(octets.sums);
@@ -222,13 +150,6 @@ ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& column
     if (detailed(shape, index)) store_details(octets, statuses, arm);
     arm.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return arm;
-}
-
-}  // namespace
-
-bool detailed(const SimulationShape& shape, std::int64_t index) {
-    static_assert(block_size == 256, "detailed_trials counts whole blocks");
-    return index < detailed_trials(shape.poses - 1, shape.state_size) / block_size;
 }
 
 Block run_block(const Simulation& simulation, const std::vector<Column>& columns, std::size_t arms,

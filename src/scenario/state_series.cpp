@@ -1,5 +1,7 @@
 #include "scenario/state_series.hpp"
 
+#include "numeric/chi_square.hpp"
+
 #include <algorithm>
 
 namespace credence {
@@ -17,6 +19,13 @@ std::string squared_unit(const std::vector<Component>& components, const Compone
                                                : unit.find('/') == std::string::npos ? unit + "^2"
                                                                                      : "(" + unit + ")^2");
     return text;
+}
+
+std::vector<double> coverage_bounds(const std::vector<ComponentGroup>& groups) {
+    std::vector<double> bounds;
+    for (const ComponentGroup& group : groups)
+        for (const double level : coverage_levels) bounds.push_back(stable_chi_square_quantile(level, group.count));
+    return bounds;
 }
 
 std::string described(const ComponentGroup& group) { return group.name == "all" ? "the whole state" : group.name; }

@@ -30,6 +30,9 @@ struct StateSeries {
 /// `unit of error squared` where one has no unit.
 std::string squared_unit(const std::vector<Component>& components, const ComponentGroup& group);
 
+/// [groups, coverage_level_count] quantiles of chi-square with as many degrees of freedom as each group has components.
+std::vector<double> coverage_bounds(const std::vector<ComponentGroup>& groups);
+
 // The series of every world, by kind. `unit_of` is the unit of a group's squared error.
 using UnitOf = std::function<std::string(const ComponentGroup&)>;
 

@@ -1,7 +1,7 @@
 #include "slam/trial/problem.hpp"
 
 #include <credence/detail/functions.hpp>
-#include "numeric/chi_square.hpp"
+#include "scenario/state_series.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -67,13 +67,6 @@ void set_range(SensorParameters& sensor, double range_min, double range_max) {
     sensor.range_max = range_max;
     sensor.squared_range_min = least_square(range_min);
     sensor.squared_range_max = greatest_square(range_max);
-}
-
-std::vector<double> coverage_bounds(const std::vector<ComponentGroup>& groups) {
-    std::vector<double> bounds;
-    for (const ComponentGroup& group : groups)
-        for (const double level : coverage_levels) bounds.push_back(stable_chi_square_quantile(level, group.count));
-    return bounds;
 }
 
 std::vector<Point> feature_translations(const DeformableSettings& s) {

@@ -14,9 +14,6 @@ Point polar(double s, double angle);
 /// The range in which a feature is seen, both ends included.
 void set_range(SensorParameters& sensor, double range_min, double range_max);
 
-/// [groups, coverage_level_count] quantiles of chi-square with as many degrees of freedom as each group has components.
-std::vector<double> coverage_bounds(const std::vector<ComponentGroup>& groups);
-
 /// The data that a trial of any built-in world reads: plain numbers, and pointers into its problem.
 struct CommonView {
     int poses = 0, features = 0, state_size = 0;

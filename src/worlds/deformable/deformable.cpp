@@ -9,23 +9,6 @@ namespace credence {
 
 namespace {
 
-/// A simulation with the problem that it reads.
-class OwningSimulation : public Simulation {
-public:
-    explicit OwningSimulation(const DeformableSettings& scenario) : problem_(scenario), simulation_(problem_) {}
-    const SimulationShape& shape() const override { return simulation_.shape(); }
-    std::size_t workspace_size(std::size_t arm) const override { return simulation_.workspace_size(arm); }
-    void simulate(std::size_t arm, const Batch& batch) const override { simulation_.simulate(arm, batch); }
-    Trajectory replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,
-                      std::int64_t trial) const override {
-        return simulation_.replay(scenario, arm, root_seed, trial);
-    }
-
-private:
-    Problem problem_;
-    DeformableSimulation simulation_;
-};
-
 /// The deformable world as WorldOf takes it.
 struct Deformable {
     using Settings = DeformableSettings;
@@ -45,7 +28,7 @@ struct Deformable {
     std::vector<Column> columns(const Settings& settings, const Scenario&) const { return trial_columns(settings); }
     std::vector<Series> all_series(const Settings& settings, const Scenario&) const { return step_series(settings); }
     std::unique_ptr<const Simulation> simulation(const Settings& settings, const Scenario&) const {
-        return std::make_unique<OwningSimulation>(settings);
+        return std::make_unique<DeformableSimulation>(std::make_shared<const Problem>(settings));
     }
 };
 
@@ -62,23 +45,23 @@ DeformableSettings settings_of(const Scenario& scenario) {
     return WorldOf<Deformable>().settings_of(scenario);
 }
 
-DeformableSimulation::DeformableSimulation(const Problem& problem, Target target)
-    : problem_(problem), target_(std::move(target)), arms_(arms_of(problem.scenario())) {
-    const ProblemView& view = problem.view();
+DeformableSimulation::DeformableSimulation(std::shared_ptr<const Problem> problem, Target target)
+    : problem_(std::move(problem)), target_(std::move(target)), arms_(arms_of(problem_->scenario())) {
+    const ProblemView& view = problem_->view();
     shape_ = {view.poses, view.state_size, column_count, view.series_count, view.group_count};
 }
 
 std::size_t DeformableSimulation::workspace_size(std::size_t arm) const {
-    return target_.workspace_size(problem_.view(), arms_[arm].estimator);
+    return target_.workspace_size(problem_->view(), arms_[arm].estimator);
 }
 
 void DeformableSimulation::simulate(std::size_t arm, const Batch& batch) const {
-    target_.simulate(problem_.view(), arms_[arm], batch);
+    target_.simulate(problem_->view(), arms_[arm], batch);
 }
 
 Trajectory DeformableSimulation::replay(const Scenario&, std::size_t arm, std::uint64_t root_seed,
                                         std::int64_t trial) const {
-    return replay_trial(problem_, arms_[arm], root_seed, trial);
+    return replay_trial(*problem_, arms_[arm], root_seed, trial);
 }
 
 Block run_block(const Problem& problem, std::uint64_t root_seed, std::int64_t index, int trials, const Target& target) {

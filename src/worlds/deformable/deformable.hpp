@@ -18,10 +18,13 @@ std::unique_ptr<const World> deformable_world();
 Scenario scenario_of(const DeformableSettings& settings);
 DeformableSettings settings_of(const Scenario& scenario);
 
-/// The trials of a problem, which must outlive it, on a unit.
+/// The trials of a problem on a unit.
 class DeformableSimulation : public Simulation {
 public:
-    explicit DeformableSimulation(const Problem& problem, Target target = best_target());
+    explicit DeformableSimulation(std::shared_ptr<const Problem> problem, Target target = best_target());
+    /// The problem must outlive it.
+    explicit DeformableSimulation(const Problem& problem, Target target = best_target())
+        : DeformableSimulation(std::shared_ptr<const Problem>(std::shared_ptr<void>(), &problem), std::move(target)) {}
     const SimulationShape& shape() const override { return shape_; }
     std::size_t workspace_size(std::size_t arm) const override;
     void simulate(std::size_t arm, const Batch& batch) const override;
@@ -29,7 +32,7 @@ public:
                       std::int64_t trial) const override;
 
 private:
-    const Problem& problem_;
+    std::shared_ptr<const Problem> problem_;
     Target target_;
     std::vector<Arm> arms_;
     SimulationShape shape_;

@@ -1,5 +1,7 @@
 #include "worlds/landmarks/problem.hpp"
 
+#include "scenario/state_series.hpp"
+
 #include <algorithm>
 
 namespace credence {

@@ -11,30 +11,24 @@ namespace credence {
 
 class LaneRecorder {
 public:
-    /// Adds dimensions and variables. `rows` is the most rows of an innovation, `lanes` the number of a pack.
-    LaneRecorder(int rows, int lanes, Trajectory& trajectory);
+    /// Adds dimensions and variables. `lanes` is the number of a pack.
+    LaneRecorder(const OwnView& view, int lanes, Trajectory& trajectory)
+        : lanes_(lanes), recording_(view.largest_innovation, trajectory),
+          all_series_(static_cast<std::size_t>(view.series_count)) {}
 
-    /// Runs the view's world on a pack whose steps this records.
-    void run(const OwnView& view, LanePack& pack, void (*run_pack)(const OwnView& view, LanePack& pack));
+    /// Takes a step in that the pack has evaluated; the trial fails there unless it `goes_on`.
+    void take(const LanePack& pack, const LaneStep& step, bool goes_on);
 
     /// A series of the steps that the trial took before it failed.
-    std::vector<double> series(std::size_t place) const;
+    const std::vector<double>& series(std::size_t place) const { return all_series_[place]; }
 
 private:
-    /// Stands between the world's function and the engine's pack.
-    struct Between : LanePack {
-        LanePack& pack;
-        LaneRecorder& recorder;
-        Between(LanePack& whole, LaneRecorder& to) : LanePack(whole), pack(whole), recorder(to) {}
-    };
-    void record(const LanePack& pack, const LaneStep& step);
     /// Lane 0 of a matrix.
     Eigen::MatrixXd lane(const double* entries, int rows, int columns) const;
 
     int lanes_;
     StepRecorder recording_;
-    std::vector<double> all_series_;  ///< [series, K - 1] of lane 0
-    std::size_t steps_ = 0, steps_taken_ = 0;
+    std::vector<std::vector<double>> all_series_;  ///< of lane 0
 };
 
 }  // namespace credence

@@ -2,7 +2,7 @@
 
 #include <credence/detail/draws.hpp>
 #include <credence/detail/lanes_of.hpp>
-#include "numeric/chi_square.hpp"
+#include "engine/octets.hpp"
 #include "numeric/positive_definite.hpp"
 #include "scenario/state_series.hpp"
 #include "worlds/own/lanes/one_by_one.hpp"
@@ -11,11 +11,7 @@
 #include "worlds/simulate.hpp"
 
 #include <algorithm>
-#include <bit>
-#include <cstddef>
 #include <limits>
-#include <new>
-#include <stdexcept>
 #include <utility>
 
 namespace credence {
@@ -45,51 +41,16 @@ bool positive_definite(const double* matrix, int n) {
                                 std::numeric_limits<double>::epsilon());
 }
 
-/// Room for one trial's results, all of which a batch asks for.
-struct OneTrial {
-    std::vector<double> columns, sums, square_sums, run_square_sums, nees;
-    std::vector<std::int32_t> covered;
-    Batch batch;
+bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
+    const auto bits = [](double number) { return bits_of(number); };
+    return std::ranges::equal(a, b, {}, bits, bits);
+}
 
-    OneTrial(const SimulationShape& shape, std::uint64_t root_seed, std::int64_t trial) {
-        const auto steps = static_cast<std::size_t>(shape.poses - 1);
-        const auto all_series = static_cast<std::size_t>(shape.series_count);
-        columns.resize(static_cast<std::size_t>(shape.column_count) * octet);
-        sums.resize(all_series * steps * octet);
-        square_sums.resize(sums.size());
-        run_square_sums.resize(all_series * octet);
-        nees.resize(steps * octet);
-        covered.resize(static_cast<std::size_t>(shape.group_count) * steps * coverage_level_count);
-        batch.root_seed = root_seed;
-        batch.first_trial = trial;
-        batch.trials = 1;
-        batch.columns = columns.data();
-        batch.sums = sums.data();
-        batch.square_sums = square_sums.data();
-        batch.run_square_sums = run_square_sums.data();
-        batch.covered = covered.data();
-        batch.nees = nees.data();
-    }
-
-    /// Of a trial that failed nothing counts but its status.
-    void leave_out_what_failed(const std::vector<Column>& declared) {
-        std::vector<double> row;
-        for (std::size_t c = 0; c < declared.size(); ++c) row.push_back(columns[c * octet]);
-        if (!fill_failed(declared, row.data())) return;
-        for (std::size_t c = 0; c < declared.size(); ++c) columns[c * octet] = row[c];
-        for (std::vector<double>* series : {&sums, &square_sums, &nees}) std::ranges::fill(*series, 0);
-    }
-
-    /// Whether the numbers of the trial, which is the first of its octet, are the same bits.
-    bool same_as(const OneTrial& other) const {
-        for (const auto member : {&OneTrial::columns, &OneTrial::sums, &OneTrial::square_sums, &OneTrial::nees})
-            for (std::size_t i = 0; i < (this->*member).size(); i += octet)
-                if (std::bit_cast<std::uint64_t>((this->*member)[i]) !=
-                    std::bit_cast<std::uint64_t>((other.*member)[i]))
-                    return false;
-        return true;
-    }
-};
+/// Of a trial that failed nothing counts but its status.
+bool same_trial(const ArmBlock& a, const ArmBlock& b) {
+    return same_bits(a.columns, b.columns) && same_bits(a.sums, b.sums) && same_bits(a.square_sums, b.square_sums) &&
+           same_bits(a.moments, b.moments);
+}
 
 void run_pack(const OwnView& view, LanePack& pack) {
     if (!call_world(pack, 0, pack.trials, [&] { view.run_world(view.settings, pack); })) return;
@@ -98,7 +59,9 @@ void run_pack(const OwnView& view, LanePack& pack) {
                            std::to_string(view.poses - 1) + ".");
 }
 
-void record_pack(const OwnView& view, LanePack& pack) { view.recorder->run(view, pack, run_pack); }
+void record_step(LaneRecorder& recorder, const LanePack& pack, const LaneStep& step, bool goes_on) {
+    recorder.take(pack, step, goes_on);
+}
 
 class LaneSimulation : public Simulation {
 public:
@@ -111,12 +74,10 @@ public:
           columns_(own_columns(scenario, report)),
           innovations_(report.largest_innovation > 0 ? Innovations::given : Innovations::none),
           all_series_(scenario.components, scenario.groups, innovations_),
-          declared_(scenario.groups) {
-        for (const ComponentGroup& group : declared_) {
+          declared_(scenario.groups),
+          coverage_bounds_(coverage_bounds(declared_)) {
+        for (const ComponentGroup& group : declared_)
             groups_.push_back({group.first, group.count, group.contiguous() ? nullptr : group.components.data()});
-            for (const double level : coverage_levels)
-                coverage_bounds_.push_back(stable_chi_square_quantile(level, group.count));
-        }
         view_.poses = scenario.poses;
         view_.state_size = static_cast<int>(scenario.components.size());
         view_.group_count = static_cast<int>(groups_.size());
@@ -149,13 +110,10 @@ public:
     }
 
     void check_repeats(std::uint64_t root_seed) const override {
+        BlockMemory memory;
         for (std::size_t arm = 0; arm < arms_.size(); ++arm) {
-            OneTrial first(shape_, root_seed, 0), second(shape_, root_seed, 0);
-            for (OneTrial* one : {&first, &second}) {
-                run_one(view_of(arm), *one);
-                one->leave_out_what_failed(columns_);
-            }
-            if (!first.same_as(second))
+            const auto first = run_arm(*this, columns_, arm, root_seed, 0, 1, memory);
+            if (!same_trial(first, run_arm(*this, columns_, arm, root_seed, 0, 1, memory)))
                 throw InputError("cannot run world " + printable(world_) + " (trial 0 of " + printable(arms_[arm]) +
                                  " gives other numbers a second time: of a clock, of another generator, or of what is "
                                  "kept from trial to trial). Draw by trial.normal and trial.uniform alone, and keep "
@@ -167,13 +125,14 @@ public:
                       std::int64_t trial) const override {
         Trajectory trajectory = empty_trajectory(scenario, scenario.arms[arm], columns_);
         trajectory.source = source_text(root_seed, trial);
-        LaneRecorder recorder(view_.largest_innovation, target_.lanes, trajectory);
+        LaneRecorder recorder(view_, target_.lanes, trajectory);
         OwnView view = view_of(arm);
-        view.run = record_pack;
+        view.record = record_step;
         view.recorder = &recorder;
-        OneTrial one(shape_, root_seed, trial);
-        run_one(view, one);
-        for (std::size_t c = 0; c < columns_.size(); ++c) trajectory.column_values[c] = one.columns[c * octet];
+        BlockMemory one;
+        one.octets.prepare(shape_, 1, false);
+        target_.simulate_own(view, one.octets.batch(root_seed, trial, one.room.of_size(workspace_size(arm))));
+        for (std::size_t c = 0; c < columns_.size(); ++c) trajectory.column_values[c] = one.octets.columns[c * octet];
         fill_failed(trajectory.columns, trajectory.column_values.data());
         add_evaluations(trajectory, all_series_, innovations_,
                         [&](std::size_t place) { return recorder.series(place); });
@@ -187,17 +146,6 @@ private:
         view.arm_name = &arms_[arm];
         return view;
     }
-    void run_one(const OwnView& view, OneTrial& one) const {
-        const std::unique_ptr<std::byte[], AlignedDelete> room(
-            new (room_alignment) std::byte[workspace_size(view.arm)]);
-        one.batch.workspace = room.get();
-        target_.simulate_own(view, one.batch);
-    }
-
-    static constexpr std::align_val_t room_alignment{64};  // as a pack of lanes wants it
-    struct AlignedDelete {
-        void operator()(std::byte* bytes) const { ::operator delete[](bytes, room_alignment); }
-    };
 
     std::string world_;
     std::vector<std::string> arms_;

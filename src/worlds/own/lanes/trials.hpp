@@ -119,7 +119,9 @@ private:
         if (view_.largest_innovation > 0) evaluate_innovation(step);
         note_figures();
         ++steps;
-        return any(going_on());
+        const bool goes_on = any(going_on());
+        if (view_.record != nullptr) view_.record(*view_.recorder, *this, step, goes_on);
+        return goes_on;
     }
 
     /// The sum of a series over the steps.

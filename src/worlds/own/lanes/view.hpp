@@ -32,7 +32,9 @@ struct OwnView : CommonView {
     void (*run)(const OwnView& view, LanePack& pack) = nullptr;
     const void* settings = nullptr;
     RunPack run_world = nullptr;
-    LaneRecorder* recorder = nullptr;  ///< of a trial that is run again, in lane 0
+    /// Of a trial that is run again, in lane 0: `record` receives each of its steps [LaneRecorder].
+    void (*record)(LaneRecorder& recorder, const LanePack& pack, const LaneStep& step, bool goes_on) = nullptr;
+    LaneRecorder* recorder = nullptr;
 };
 
 }  // namespace credence

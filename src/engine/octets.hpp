@@ -1,0 +1,97 @@
+#pragma once
+// The memory that a simulation's batch reads and fills.
+
+#include <credence/columns.hpp>
+#include <credence/detail/block.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <vector>
+
+namespace credence {
+
+/// Room for a unit, from a 64-byte boundary on as a pack of lanes wants it. It is kept from block to block, and what a
+/// trial does not touch of it is never paid for.
+class WorkRoom {
+public:
+    void* of_size(std::size_t size) {
+        if (size > size_) {
+            bytes_.reset(new (alignment) std::byte[size]);
+            size_ = size;
+        }
+        return bytes_.get();
+    }
+
+private:
+    static constexpr std::align_val_t alignment{64};
+    struct Release {
+        void operator()(std::byte* bytes) const { ::operator delete[](bytes, alignment); }
+    };
+    std::unique_ptr<std::byte[], Release> bytes_;
+    std::size_t size_ = 0;
+};
+
+/// What a unit fills, eight trials next to each other. Kept from block to block; what a unit adds to begins at 0.
+struct Octets {
+    std::size_t trials = 0, padded = 0, steps = 0, components = 0, moment_count = 0;
+    bool detail = false;
+    std::vector<double> columns, sums, square_sums, run_square_sums, nees;
+    std::vector<std::int32_t> covered;
+    std::vector<double> errors, moments, product_sums, product_square_sums, product_counts;
+
+    void prepare(const SimulationShape& shape, std::size_t count, bool detailed) {
+        const auto all_series = static_cast<std::size_t>(shape.series_count);
+        const auto blocks = static_cast<std::size_t>(shape.group_count);
+        trials = count;
+        padded = (count + octet - 1) / octet * octet;
+        steps = static_cast<std::size_t>(shape.poses - 1);
+        components = static_cast<std::size_t>(shape.state_size);
+        detail = detailed;
+        columns.resize(padded * static_cast<std::size_t>(shape.column_count));
+        nees.resize(steps * padded);
+        sums.assign(all_series * steps * octet, 0);
+        square_sums.assign(sums.size(), 0);
+        run_square_sums.assign(all_series * octet, 0);
+        covered.assign(blocks * steps * coverage_level_count, 0);
+        if (!detail) {
+            errors = moments = std::vector<double>();  // much room, and seldom wanted; {} would keep it
+            return;
+        }
+        errors.resize(components * steps * padded);
+        moment_count = static_cast<std::size_t>(credence::moment_count(shape.state_size, shape.group_count));
+        moments.resize(moment_count * padded);
+        for (auto* products : {&product_sums, &product_square_sums, &product_counts})
+            products->assign(static_cast<std::size_t>(lag_count(shape.poses)) * octet, 0);
+    }
+
+    Batch batch(std::uint64_t root_seed, std::int64_t first_trial, void* workspace) {
+        Batch batch{root_seed, first_trial, static_cast<int>(trials)};
+        batch.columns = columns.data();
+        batch.sums = sums.data();
+        batch.square_sums = square_sums.data();
+        batch.run_square_sums = run_square_sums.data();
+        batch.covered = covered.data();
+        batch.nees = nees.data();
+        batch.errors = detail ? errors.data() : nullptr;
+        batch.moments = detail ? moments.data() : nullptr;
+        batch.product_sums = product_sums.data();
+        batch.product_square_sums = product_square_sums.data();
+        batch.product_counts = product_counts.data();
+        batch.workspace = workspace;
+        return batch;
+    }
+};
+
+/// The memory in which one thread computes a block.
+struct BlockMemory {
+    Octets octets;
+    WorkRoom room;
+};
+
+/// One arm's part of a block [block.hpp, run_block].
+ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& columns, std::size_t a,
+                 std::uint64_t root_seed, std::int64_t index, int trials, BlockMemory& memory);
+
+}  // namespace credence
