@@ -17,6 +17,18 @@ void add_later(Keys& keys, DeformableKey key) {
     keys.push_back(std::move(key));
 }
 
+/// A whole number from 1 on, or `default`, which leaves it out.
+template <class Field>
+DeformableKey optional_integer_key(const char* name, const char* help, int most, Field field) {
+    return {name, help,
+            [=](DeformableSettings& s, const std::string& v) {
+                field(s).reset();
+                if (v != "default") field(s) = static_cast<int>(parse_integer(name, v, 1, most));
+            },
+            [=](const DeformableSettings& s) { return field(s) ? std::to_string(*field(s)) : "default"; },
+            {"default"}};
+}
+
 void add_scenario_keys(Keys& keys) {
     add_common_keys(keys);
     keys.push_back(choice_key<Process>("model.process", {"heading", "translation"},
@@ -29,18 +41,10 @@ void add_feature_keys(Keys& keys) {
                         s.features.positions = parse_points("features.positions", v, largest_feature_count);
                     },
                     [](const DeformableSettings& s) { return positions_text(s.features.positions); }});
-    add_later(keys, {"features.count",
-                     "M, 1 to 64, where they are placed in a box or ring; default as many as positions",
-                     [](DeformableSettings& s, const std::string& v) {
-                         s.features.count.reset();
-                         if (v == "default") return;
-                         s.features.count =
-                             static_cast<int>(parse_integer("features.count", v, 1, largest_feature_count));
-                     },
-                     [](const DeformableSettings& s) {
-                         return s.features.count ? std::to_string(*s.features.count) : "default";
-                     },
-                     {"default"}});
+    add_later(keys, optional_integer_key(
+                        "features.count",
+                        "M, 1 to 64, where they are placed in a box or ring; default as many as positions",
+                        largest_feature_count, [](auto& s) -> auto& { return s.features.count; }));
     add_later(keys, choice_key<Placement>("features.placement", {"given", "box", "ring"},
                                           [](auto& s) -> auto& { return s.features.placement; }));
     add_later(keys, real_key("features.extent", "side of the box about the first position (length)", above(0),
@@ -169,28 +173,17 @@ void add_planner_keys(Keys& keys) {
     add_later(keys, real_key("planner.heading_weight",
                              "what 1 rad^2 counts in a trace or eigenvalue that is minimised (length^2)", from(0),
                              [](auto& s) -> auto& { return s.planner.heading_weight; }));
-    keys.push_back(
-        {"planner.speeds", "half-width of the grid of speeds in steps of d/5 (1 to 100); default the process's own",
-         [](DeformableSettings& s, const std::string& v) {
-             s.planner.speeds.reset();
-             if (v != "default") s.planner.speeds = static_cast<int>(parse_integer("planner.speeds", v, 1, 100));
-         },
-         [](const DeformableSettings& s) { return s.planner.speeds ? std::to_string(*s.planner.speeds) : "default"; },
-         {"default"}});
+    keys.push_back(optional_integer_key(
+        "planner.speeds", "half-width of the grid of speeds in steps of d/5 (1 to 100); default the process's own", 100,
+        [](auto& s) -> auto& { return s.planner.speeds; }));
     keys.push_back({"planner.turns",
                     "turns of the candidates (rad), up to 100; none in the translation model; default the path's own",
                     [](DeformableSettings& s, const std::string& v) { s.planner.turns = parse_turns(v); },
                     [](const DeformableSettings& s) { return turns_text(s.planner.turns); }, {"default", "none"}});
-    keys.push_back(
-        {"planner.horizon",
-         "steps that the controller horizon plans ahead (1 to 8; 1 is greedy); default 2, or 1 where no arm has it",
-         [](DeformableSettings& s, const std::string& v) {
-             s.planner.horizon.reset();
-             if (v != "default")
-                 s.planner.horizon = static_cast<int>(parse_integer("planner.horizon", v, 1, largest_horizon));
-         },
-         [](const DeformableSettings& s) { return s.planner.horizon ? std::to_string(*s.planner.horizon) : "default"; },
-         {"default"}});
+    keys.push_back(optional_integer_key(
+        "planner.horizon",
+        "steps that the controller horizon plans ahead (1 to 8; 1 is greedy); default 2, or 1 where no arm has it",
+        largest_horizon, [](auto& s) -> auto& { return s.planner.horizon; }));
 }
 
 void add_arm_keys(Keys& keys) {
