@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string>
 
 namespace credence {
 
@@ -35,21 +36,16 @@ public:
     bool by_chance() const { return chance_[0] && chance_[1]; }
 
     /// The run with which this one agrees in all numbers, if there are two or more.
-    std::optional<std::int64_t> end_trial(std::int64_t trial) {
-        constexpr std::size_t most = 1 << 18;  // runs that are remembered; together some 50 MB
-        if (count_ < 2) return std::nullopt;
-        if (const auto found = runs_.find(now_); found != runs_.end())
-            return found->second;
-        if (runs_.size() == most) return std::nullopt;
-        runs_.emplace(now_, trial);
-        for (std::size_t i = 0; i < 2; ++i)
-            if (!parts_[i].insert(now_[i]).second) chance_[i] = true;
-        return std::nullopt;
-    }
+    std::optional<std::int64_t> end_trial(std::int64_t trial);
+
+    std::int64_t copies() const { return copies_; }
+    /// Says how many of all runs are copies.
+    std::string note(std::int64_t trials) const;
 
 private:
     std::array<std::uint64_t, 2> now_{};
     std::size_t count_ = 0;                                      ///< numbers of the run
+    std::int64_t copies_ = 0;
     std::map<std::array<std::uint64_t, 2>, std::int64_t> runs_;  ///< the first run of each kind
     std::array<std::set<std::uint64_t>, 2> parts_;
     std::array<bool, 2> chance_{};                               ///< whether runs that differ agree in this part

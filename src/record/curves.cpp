@@ -21,11 +21,11 @@ void RecordTotals::keep_curves(std::size_t trial) {
     for (std::size_t i = 1; i < present_.size(); ++i) {
         const double all = between(present_.front(), present_.back()), gap = between(present_[i - 1], present_[i]);
         if (gap > all / 50 && gap > 2.5 * all / static_cast<double>(present_.size()))
-            curves.gaps.emplace_back(present_[i - 1] / every_, (present_[i] - 1) / every_ + 1);
+            curves.gaps.emplace_back(kept_.place(present_[i - 1]), kept_.place(present_[i] - 1) + 1);
     }
-    if (every_ > 1 && !curves.times.empty()) {
-        for (std::size_t k = 0; k < kept_steps(); ++k) curves.times[k] = curves.times[k * every_];
-        curves.times.resize(kept_steps());
+    if (kept_.every > 1 && !curves.times.empty()) {
+        for (std::size_t k = 0; k < kept_.count; ++k) curves.times[k] = curves.times[k * kept_.every];
+        curves.times.resize(kept_.count);
     }
     const int shown = static_cast<int>(std::clamp<std::int64_t>(most_curves / shape_.trials, 1, shape_.n));
     for (int j = 0; j < shown && shape_.has_errors; ++j) {
@@ -34,11 +34,11 @@ void RecordTotals::keep_curves(std::size_t trial) {
         std::vector<std::size_t> steps;
         std::vector<double> errors, in_sigmas;
         for (const std::size_t k : present_) {
-            if (!is_kept(k)) continue;
+            if (!kept_.has(k)) continue;
             const double sigmas = series(all_series_.standardised_error + at, k);
             if (std::isnan(sigmas) || sigmas == 0) continue;  // an error of 0 does not tell its sigma
-            steps.push_back(k / every_);
-            errors.push_back(arm().errors[(trial * kept_steps() + steps.back()) * n + at]);
+            steps.push_back(kept_.place(k));
+            errors.push_back(arm().errors[(trial * kept_.count + steps.back()) * n + at]);
             in_sigmas.push_back(sigmas);
             curve.outside += std::abs(sigmas) > 2;
         }

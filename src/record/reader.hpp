@@ -45,6 +45,8 @@ public:
 
     /// The part that starts at a trial and step, as large as allowed, but at least one step.
     RecordPart part_at(std::int64_t trial, int step) const;
+    /// Calls `visit` for every part, until it returns false.
+    void each_part(const std::function<bool(const RecordPart&)>& visit) const;
     void read(const RecordPart& part, RecordValues& values) const;
 
 private:
@@ -53,8 +55,6 @@ private:
     void require_quaternions(const RecordDataset& dataset, std::int64_t trial, int step,
                              const double* coordinates) const;
     void add_size(const DatasetPointer& dataset);
-    /// Calls `visit` for every part, until it returns false.
-    void each_part(const std::function<bool(const RecordPart&)>& visit) const;
     int longest_trial() const;
     std::vector<char> known_components() const;
     void read_errors(const RecordPart& part, RecordValues& values) const;

@@ -15,19 +15,14 @@ void each_step(const RecordReader& reader, const std::function<void(const Record
     const auto start = std::chrono::steady_clock::now();
     const RecordShape& shape = reader.shape();
     RecordValues values;
-    for (std::int64_t trial = 0; trial < shape.trials;) {
-        std::int64_t trials = 1;
-        for (int step = 0; step < shape.steps;) {
-            const RecordPart part = reader.part_at(trial, step);
-            reader.read(part, values);
-            for_each_step(part, values, use);
-            step += part.steps;
-            trials = part.trials;
-        }
-        trial += trials;
+    reader.each_part([&](const RecordPart& part) {
+        reader.read(part, values);
+        for_each_step(part, values, use);
         const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-        if (progress) progress({trial, shape.trials, seconds.count()});
-    }
+        if (progress && part.first_step + part.steps == shape.steps)
+            progress({part.first_trial + part.trials, shape.trials, seconds.count()});
+        return true;
+    });
 }
 
 namespace {

@@ -25,28 +25,19 @@ std::string scenario_name(const std::string& path, const std::string& arm) {
     return name.empty() ? "record" : name;
 }
 
-ArmResults empty_arm(const ScenarioResults& results, const std::string& name) {
-    const auto steps = static_cast<std::size_t>(results.steps());
-    const auto trials = static_cast<std::size_t>(results.trials);
-    const auto lags = static_cast<std::size_t>(lag_count(results.scenario.poses));
-    ArmResults arm;
+void add_empty_arm(const std::string& name, ScenarioResults& results) {
+    const auto steps = static_cast<std::size_t>(results.steps()), trials = static_cast<std::size_t>(results.trials),
+               detailed = static_cast<std::size_t>(results.detailed()) * steps;
+    ArmResults& arm = results.arms.emplace_back();
     arm.name = name;
+    clear_totals(results);
+    arm.totals.cells.clear();
+    for (SeriesTotals& series : arm.totals.series) series.run_sum.emplace();
     for (const Column& column : results.columns) arm.columns.in_memory().emplace_back(trials, column.fill);
-    for (const Series& series : results.all_series) {
-        const std::size_t counts = series.role == SeriesRole::nees ? steps * coverage_level_count : 0;
-        arm.totals.series.push_back({std::vector<ExactSum>(steps),
-                                     std::vector<ExactSum>(series.integer ? 0 : steps),
-                                     {},
-                                     ExactSum(),
-                                     std::vector<std::int64_t>(counts)});
-    }
-    arm.totals.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags), std::vector<std::int64_t>(lags)};
-    const std::size_t detailed = static_cast<std::size_t>(results.detailed()) * steps;
     arm.errors.assign(detailed * static_cast<std::size_t>(results.state_size()), nan);
     arm.nees.assign(detailed, nan);
     arm.moments.assign(static_cast<std::size_t>(results.detailed() * results.moment_count()), nan);
     arm.totals.present.resize(steps);
-    return arm;
 }
 
 /// The groups of a source, such as `pose, feature_1`.
@@ -130,7 +121,7 @@ ScenarioResults empty_record_results(const RecordShape& shape, const std::vector
     results.has_joint_covariance = shape.has_joint();
     results.not_judged = not_judged(shape);
     results.epsilon = std::max(results.epsilon, shape.covariance_epsilon);
-    results.arms.push_back(empty_arm(results, shape.arm));
+    add_empty_arm(shape.arm, results);
     return results;
 }
 

@@ -1,6 +1,5 @@
 #include "record/totals.hpp"
 
-#include "numeric/chi_square.hpp"
 #include "statistics/goodness.hpp"
 
 #include "record/results.hpp"
@@ -19,23 +18,12 @@ constexpr std::int64_t most_values = std::int64_t{1} << 24;  ///< limit on the N
 constexpr std::size_t most_troubles = 20;
 constexpr double accuracy_of_nis = 0.005;  ///< a tenth of the usual margin: where rounding may do more, NIS is left out
 
-std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
-
-/// Totals take some 2.7 kB a step and group, as text as much again.
-std::size_t steps_between_kept(const RecordShape& shape) {
-    constexpr std::int64_t most_steps = 99'999, most = 1'000'000, few_steps = 10'000, few = 100'000;
-    const std::int64_t steps = shape.steps, groups = std::ssize(shape.groups);
-    if (steps <= most_steps && groups * steps <= most) return 1;
-    const std::int64_t kept = std::clamp<std::int64_t>(few / groups, 12, few_steps);
-    return size((steps + kept - 1) / kept);
-}
-
 }  // namespace
 
 RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, LostTrials lost, Copies copies,
                            SegmentPlanner* planner)
     : shape_(shape),
-      every_(steps_between_kept(shape_)),
+      kept_(shape_),
       lost_(lost),
       copies_(copies),
       planner_(planner),
@@ -46,8 +34,8 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, Lo
       gaps_(size(shape_.steps)),
       products_(size(lag_count(shape_.steps + 1)), size(shape_.m)),
       moments_(shape_.n, shape_.groups.size()) {
-    const std::int64_t kept = (shape.steps - 1) / static_cast<int>(every_) + 1;
-    record_.every = static_cast<int>(every_);
+    const auto kept = static_cast<std::int64_t>(kept_.count);
+    record_.every = static_cast<int>(kept_.every);
     record_.results = empty_record_results(shape_, all_series_.list, path, static_cast<int>(kept));
     record_.has_innovations = shape.has_innovations();
     for (std::size_t g = 0; shape.has_innovations() && g <= shape.row_groups.size(); ++g)
@@ -56,8 +44,7 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, Lo
     keeps_cells_ = kept * distribution_cells <= most_values && !keeps_nees_;
     if (keeps_nees_) nees_.resize(size(kept));
     if (keeps_cells_) arm().totals.cells.resize(size(kept) * distribution_cells);
-    for (const ComponentGroup& group : shape.groups)
-        for (const double level : coverage_levels) bounds_.push_back(stable_chi_square_quantile(level, group.count));
+    bounds_ = coverage_bounds(shape.groups);
     values_.resize(size(shape.steps) * all_series_.list.size());
     roundings_.resize(size(kept) * (1 + shape.groups.size()));
     for (SeriesTotals& totals : arm().totals.series) totals.present.resize(size(kept));
@@ -101,7 +88,6 @@ void RecordTotals::check_copy(std::int64_t trial) {
     if (copies_ == Copies::count) return;
     const std::optional<std::int64_t> first = copy_finder_.end_trial(trial);
     if (!first) return;
-    ++copies_found_;
     note({trial, 0}, Status::non_finite,
          "its errors are those of trial " + std::to_string(*first) + ", to the last bit: it is a copy");
     trouble_.status = Status::completed;
@@ -140,37 +126,6 @@ void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checke
     if (record_.has_innovations) products_.correlate();
 }
 
-/// Notes the dimension that the state has at this step, and scales its NEES to that of the whole state.
-void RecordTotals::set_dimension(std::size_t k) {
-    if (dimensions_.empty()) return;
-    dimensions_[k] = static_cast<int>(std::ranges::count(checked_.here, 1));
-    if (dimensions_[k] < shape_.n) series(0, k) *= static_cast<double>(shape_.n) / dimensions_[k];
-}
-
-/// What rounding may have done to each group's NEES at this step: the mean of many covariances may hide it.
-void RecordTotals::add_rounding(std::size_t k) {
-    const std::vector<double>& bounds = judge_.rounding();
-    double* sums = &roundings_[k / every_ * (1 + bounds.size())];
-    ++sums[0];
-    for (std::size_t b = 0; b < bounds.size(); ++b) sums[1 + b] += bounds[b];
-}
-
-void RecordTotals::finish_rounding() {
-    const std::size_t groups = shape_.groups.size();
-    arm().totals.rounding.assign(groups, 0);
-    for (std::size_t k = 0; k < kept_steps(); ++k) {
-        const double* sums = &roundings_[k * (1 + groups)];
-        for (std::size_t b = 0; sums[0] > 0 && b < groups; ++b)
-            arm().totals.rounding[b] = std::max(arm().totals.rounding[b], sums[1 + b] / sums[0]);
-    }
-}
-
-/// The NEES of the state as it is at this step.
-double RecordTotals::nees_at(std::size_t k) {
-    const bool partial = !dimensions_.empty() && dimensions_[k] < shape_.n;
-    return partial ? series(0, k) * dimensions_[k] / shape_.n : series(0, k);
-}
-
 void RecordTotals::note(const RecordStep& step, Status status, const std::string& what) {
     status_ = status;
     trouble_ = {step.trial, step.step, what, status};
@@ -179,8 +134,8 @@ void RecordTotals::note(const RecordStep& step, Status status, const std::string
 void RecordTotals::keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked) {
     if (trial >= record_.results.detailed()) return;
     if (shape_.has_errors) moments_.add(&series(0, k), &series(all_series_.standardised_error, k), checked.P);
-    if (!is_kept(k)) return;
-    const std::size_t at = size(trial) * kept_steps() + k / every_;
+    if (!kept_.has(k)) return;
+    const std::size_t at = size(trial) * kept_.count + kept_.place(k);
     arm().nees[at] = !dimensions_.empty() && dimensions_[k] < shape_.n ? nan : series(0, k);
     for (Eigen::Index j = 0; j < checked.e.size(); ++j)
         arm().errors[at * size(shape_.n) + static_cast<std::size_t>(j)] =
@@ -211,8 +166,8 @@ void RecordTotals::end_trial(std::int64_t trial) {
         const auto first = values.begin() + trial * static_cast<std::ptrdiff_t>(row);
         std::fill(first, first + static_cast<std::ptrdiff_t>(row), nan);
     };
-    forget(arm().nees, kept_steps());
-    forget(arm().errors, kept_steps() * size(shape_.n));
+    forget(arm().nees, kept_.count);
+    forget(arm().errors, kept_.count * size(shape_.n));
 }
 
 void RecordTotals::add_columns(std::int64_t trial) {
@@ -266,91 +221,6 @@ void RecordTotals::note_lost(std::int64_t trial, double nees_ratio) {
          formatted("the trial is lost: NEES/dim %.3g over its steps, most here", nees_ratio));
 }
 
-void RecordTotals::add_totals() {
-    for (std::size_t f = 0; f < all_series_.list.size(); ++f) add_series(f);
-    add_distribution();
-    keep_largest_nis();
-    for (std::size_t lag = 0; lag < products_.sum.size(); ++lag) {
-        arm().totals.products.sum[lag].add(products_.sum[lag]);
-        arm().totals.products.square_sum[lag].add(products_.sum[lag] * products_.sum[lag]);
-        arm().totals.products.count[lag] += static_cast<std::int64_t>(products_.count[lag]);
-    }
-}
-
-void RecordTotals::add_series(std::size_t f) {
-    SeriesTotals& totals = arm().totals.series[f];
-    const Series& declared = all_series_.list[f];
-    const bool of_innovations = declared.role == SeriesRole::nis || declared.role == SeriesRole::rows;
-    double run = 0, count = 0;
-    for (const std::size_t k : present_) {
-        const double value = series(f, k);
-        if (std::isnan(value) || (of_innovations && !is_kept(k))) continue;
-        run += value;
-        ++count;
-        if (!is_kept(k)) continue;
-        const std::size_t kept = k / every_;
-        totals.sum[kept].add(value);
-        if (!declared.integer) totals.square_sum[kept].add(value * value);
-        if (f < shape_.groups.size()) add_coverage(f, k, f == 0 ? nees_at(k) : value);
-        if (!totals.present.empty()) ++totals.present[kept];
-        if (f == 0 && !dimensions_.empty()) totals.dimensions[kept] += dimensions_[k];
-    }
-    if (count == 0) return;
-    if (!of_innovations) run *= static_cast<double>(kept_steps()) / count;
-    totals.run_sum->add(run);
-    totals.run_square_sum.add(run * run);
-    ++totals.runs;
-}
-
-void RecordTotals::add_coverage(std::size_t f, std::size_t k, double value) {
-    const double* bound = bounds(f, k);
-    for (std::size_t l = 0; l < coverage_level_count; ++l)
-        arm().totals.series[f].covered[k / every_ * coverage_level_count + l] += value < bound[l];
-}
-
-/// The bounds [levels] of a group's NEES at a step.
-const double* RecordTotals::bounds(std::size_t f, std::size_t k) {
-    if (f != 0 || dimensions_.empty() || dimensions_[k] == shape_.n) return &bounds_[f * coverage_level_count];
-    double* all = &bounds_by_dimension_[size(dimensions_[k]) * coverage_level_count];
-    for (std::size_t l = 0; all[0] == 0 && l < coverage_level_count; ++l)
-        all[coverage_level_count - 1 - l] =
-            stable_chi_square_quantile(coverage_levels[coverage_level_count - 1 - l], dimensions_[k]);
-    return all;
-}
-
-/// The values of `nees_` are their probabilities, so that those of states of any dimension are together.
-void RecordTotals::add_distribution() {
-    for (const std::size_t k : present_) {
-        if (!is_kept(k)) continue;
-        const std::size_t kept = k / every_;
-        ++arm().totals.present[kept];
-        const double nees = nees_at(k);
-        if (std::isnan(nees)) continue;
-        const int dimension = dimensions_.empty() ? shape_.n : dimensions_[k];
-        if (keeps_cells_)
-            ++arm().totals.cells[kept * distribution_cells + size(equiprobable_cells(dimension)->cell(nees))];
-        if (keeps_nees_) nees_[kept].push_back(1 - chi_square_p(nees, dimension));
-    }
-}
-
-void RecordTotals::keep_largest_nis() {
-    constexpr std::size_t most = 10;
-    for (LargestNis& nis : record_.largest_nis) {
-        const std::size_t f = all_series_.nis + 2 * static_cast<std::size_t>(&nis - record_.largest_nis.data());
-        for (const std::size_t k : present_) {
-            const double value = series(f, k);
-            const int rows = static_cast<int>(series(f + 1, k));
-            if (rows == 0) continue;
-            nis.rows = nis.rows == 0 || nis.rows == rows ? rows : -1;
-            ++nis.count;
-            nis.sum += value;
-            if (nis.largest.size() == most && value <= nis.largest.front()) continue;
-            nis.largest.insert(std::ranges::upper_bound(nis.largest, value), value);
-            if (nis.largest.size() > most) nis.largest.erase(nis.largest.begin());
-        }
-    }
-}
-
 Record RecordTotals::finish() {
     finish_rounding();
     record_.gaps = gaps_.finish();
@@ -358,19 +228,12 @@ Record RecordTotals::finish() {
                                        [&](std::size_t, std::size_t c) { return arm().columns.in_memory()[c].data(); })
                               .front();
     arm().totals.trials.lost_count = lost_ == LostTrials::counted;
+    std::vector<std::string>& said = record_.results.not_judged;
     if (innovations_left_out_ > 0)
-        record_.results.not_judged.push_back("The innovations of " + std::to_string(innovations_left_out_) +
-                                             " steps are left out: their covariance cannot be inverted to 0.5 %.");
-    if (copies_found_ > 0) {
-        const std::string all = std::to_string(shape_.trials), distinct = std::to_string(shape_.trials - copies_found_),
-                          copies = std::to_string(copies_found_);
-        std::vector<std::string>& said = record_.results.not_judged;
-        said.insert(said.begin(), "Only " + distinct + " of the " + all + " runs are distinct: " + copies +
-                                      " have the errors of another one, to the last bit. A copy is not independent "
-                                      "and counts as failed: give each run once, and draw the random numbers of each "
-                                      "anew.");
-    }
-    if (keeps_nees_ || !keeps_cells_) arm().totals.distribution_distance.assign(kept_steps(), nan);
+        said.push_back("The innovations of " + std::to_string(innovations_left_out_) +
+                       " steps are left out: their covariance cannot be inverted to 0.5 %.");
+    if (copy_finder_.copies() > 0) said.insert(said.begin(), copy_finder_.note(shape_.trials));
+    if (keeps_nees_ || !keeps_cells_) arm().totals.distribution_distance.assign(kept_.count, nan);
     for (std::size_t k = 0; k < nees_.size(); ++k)
         arm().totals.distribution_distance[k] = uniform_distance(std::move(nees_[k]));
     return std::move(record_);

@@ -23,6 +23,16 @@ class SegmentPlanner;
 /// Whether trials that are lost are left out of the series, or count as the others.
 enum class LostTrials { set_aside, counted };
 
+/// The steps of which a record has results by step: one in `every` [Record::every].
+struct KeptSteps {
+    std::size_t every, count;
+
+    explicit KeptSteps(const RecordShape& shape);
+    bool has(std::size_t k) const { return k % every == 0; }
+    /// The place of step k, or of the kept one before it.
+    std::size_t place(std::size_t k) const { return k / every; }
+};
+
 /// Receives a record's steps one after the other, and makes results of them.
 class RecordTotals {
 public:
@@ -36,12 +46,13 @@ public:
     void add(const RecordStep& step);
 
     /// Whether trials that were taken for copies agree by chance.
-    bool agree_by_chance() const { return copies_found_ > 0 && copy_finder_.by_chance(); }
+    bool agree_by_chance() const { return copy_finder_.copies() > 0 && copy_finder_.by_chance(); }
 
     /// The results, after the last step.
     Record finish();
 
 private:
+    static std::size_t size(std::int64_t count) { return static_cast<std::size_t>(count); }
     ArmResults& arm() { return record_.results.arms.front(); }
     double& series(std::size_t f, std::size_t k) { return values_[k * all_series_.list.size() + f]; }
 
@@ -62,16 +73,13 @@ private:
     void add_distribution();
     void keep_largest_nis();
     void set_dimension(std::size_t k);
-    /// Whether the results by step have the step, which is then their step `k / every_`.
-    bool is_kept(std::size_t k) const { return k % every_ == 0; }
-    std::size_t kept_steps() const { return static_cast<std::size_t>(record_.results.steps()); }
     void add_rounding(std::size_t k);
     void finish_rounding();
     double nees_at(std::size_t k);
     const double* bounds(std::size_t f, std::size_t k);
 
     RecordShape shape_;
-    std::size_t every_;                          ///< [Record::every]
+    KeptSteps kept_;
     LostTrials lost_;
     Copies copies_;
     SegmentPlanner* planner_;
@@ -83,7 +91,6 @@ private:
     CopyFinder copy_finder_;
     Record record_;
     bool keeps_nees_ = false, keeps_cells_ = false;
-    std::int64_t copies_found_ = 0;              ///< of runs
     std::int64_t innovations_left_out_ = 0;      ///< steps of all trials
     /// [kept steps, 1 + groups] trials with the step or one behind it that is not kept, sums over them of the bounds.
     std::vector<double> roundings_;
