@@ -33,6 +33,12 @@ std::vector<int> counted_up(int count) {
     return all;
 }
 
+std::vector<int> members_of(const ComponentGroup& group) {
+    std::vector<int> members;
+    for (int i = 0; i < group.count; ++i) members.push_back(group.component(i));
+    return members;
+}
+
 bool any_number(const double* values, std::ptrdiff_t count) {
     return !std::all_of(values, values + count, [](double value) { return std::isnan(value); });
 }

@@ -11,6 +11,9 @@ namespace credence {
 /// 0, 1 ... count - 1.
 std::vector<int> counted_up(int count);
 
+/// The components of a group, in its order.
+std::vector<int> members_of(const ComponentGroup& group);
+
 /// Whether some value is not NaN.
 bool any_number(const double* values, std::ptrdiff_t count);
 

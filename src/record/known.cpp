@@ -13,12 +13,6 @@ namespace {
 
 std::size_t index(int component) { return static_cast<std::size_t>(component); }
 
-std::vector<int> members_of(const ComponentGroup& group) {
-    std::vector<int> members;
-    for (int i = 0; i < group.count; ++i) members.push_back(group.component(i));
-    return members;
-}
-
 /// Keeps these rows, and columns where there are some, of vectors [size] or matrices [size, size].
 void keep_rows(std::vector<double>& values, std::size_t size, const std::vector<int>& rows, bool matrices) {
     const std::size_t all = matrices ? size * size : size;

@@ -16,10 +16,7 @@ std::string in_ticks(const std::string& name) { return "`" + name + "`"; }
 
 PresenceChecker::PresenceChecker(const RecordShape& shape)
     : shape_(shape), components_(static_cast<std::size_t>(shape.n)), groups_(shape.groups.size()) {
-    for (const ComponentGroup& group : shape.groups) {
-        members_.emplace_back();
-        for (int i = 0; i < group.count; ++i) members_.back().push_back(group.component(i));
-    }
+    for (const ComponentGroup& group : shape.groups) members_.push_back(members_of(group));
 }
 
 void PresenceChecker::start_trial() {

@@ -184,7 +184,8 @@ std::string StepEvaluator::evaluate_innovation(const CheckedStep& step, double* 
     all_series[places_.rows] = static_cast<double>(step.rows.size());
     innovation_rounding_ = 0;
     if (step.rows.empty()) return {};
-    const std::string wrong = factor_checked(step.S, shape_.innovation_epsilon, innovation_factor_, innovation_rounding_);
+    const std::string wrong =
+        factor_checked(step.S, shape_.innovation_epsilon, innovation_factor_, innovation_rounding_);
     if (!wrong.empty()) return "innovation covariance " + wrong;
     white_ = step.nu;
     innovation_factor_.whiten(white_);

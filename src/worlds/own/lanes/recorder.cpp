@@ -10,10 +10,9 @@ void LaneRecorder::take(const LanePack& pack, const LaneStep& step, bool goes_on
         recording_.step(error, P);
     else
         recording_.step(error, P, innovation, lane(step.S, step.rows, step.rows));
-    for (std::size_t f = 0; goes_on && f < all_series_.size(); ++f) {
-        const std::size_t cell = f * static_cast<std::size_t>(pack.poses - 1) + static_cast<std::size_t>(pack.steps - 1);
-        all_series_[f].push_back(pack.all_series[cell * static_cast<std::size_t>(lanes_)]);
-    }
+    const auto steps = static_cast<std::size_t>(pack.poses - 1), k = static_cast<std::size_t>(pack.steps - 1);
+    for (std::size_t f = 0; goes_on && f < all_series_.size(); ++f)
+        all_series_[f].push_back(pack.all_series[(f * steps + k) * static_cast<std::size_t>(lanes_)]);
 }
 
 Eigen::MatrixXd LaneRecorder::lane(const double* entries, int rows, int columns) const {
