@@ -1,6 +1,7 @@
 #pragma once
 // A pack of trials of a user's own world: its draws and the evaluation of its steps [docs/statistics.md], with a status
-// in each lane.
+// in each lane. Groups are any, so each has a factor of its own, where built-in worlds eliminate from the last feature
+// on once for many groups: the same numbers, not the same bits.
 //
 //   e  error [n], P  covariance [n, n]; nu  innovation [m], S  its covariance [m, m]
 
