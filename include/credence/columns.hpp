@@ -29,11 +29,18 @@ inline bool counts(Status status) { return status == Status::completed; }
 
 enum class ColumnType { real, integer, status };
 
+/// Where a column is shown that has not room for all; a scenario's report, JSON and CSV have them all.
+struct ColumnPlaces {
+    bool watch = true;                     ///< `credence watch`
+    bool sweep = true, sweep_pairs = true; ///< the tables by point of a sweep: of an arm, of a pair
+};
+
 /// One number per trial.
 struct Column {
     std::string name, long_name, unit;
     ColumnType type = ColumnType::real;
     double fill = 0;                       ///< value of a failed trial: NaN for real columns
+    ColumnPlaces places{};
 };
 
 /// A value published elsewhere for a column of one arm, shown with its place in the distribution over the trials.

@@ -29,6 +29,7 @@ struct ColumnReport {
     std::optional<Interval> bootstrap95;    ///< of the mean; not of columns that have their own tests; NaN likewise
     std::optional<PublishedPlace> published;  ///< its percentile NaN likewise
     std::optional<Histogram> histogram;     ///< of the columns that may have a published value; none likewise
+    ColumnPlaces places{};
 };
 
 /// How most of an arm's failed trials ended, and at which pose most of these did.

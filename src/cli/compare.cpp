@@ -48,7 +48,7 @@ void check_paths(const std::vector<std::string>& paths) {
 
 /// Adds the records of a path as arms of one scenario; `first` is the first record of all.
 void add_records(const std::string& path, std::string& first, Study& study) {
-    for (const std::string& record : record_file(path) == path ? records_in(path) : std::vector{path}) {
+    for (const std::string& record : records_in(path)) {
         if (first.empty()) first = record;
         else require_same_runs(first, record);
         Study one = study_of(read_record(record, {}, segments_off));

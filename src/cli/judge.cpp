@@ -53,8 +53,7 @@ Reported judged(const Parsed& parsed) {
     std::vector<std::string> records;
     for (const std::string& path : parsed.arguments) {
         check_kind(path, {FileKind::record});
-        const bool is_file = record_file(path) == path;
-        std::ranges::copy(is_file ? records_in(path) : std::vector{path}, std::back_inserter(records));
+        std::ranges::copy(records_in(path), std::back_inserter(records));
     }
     std::vector<Report> reports;
     RunFacts facts;

@@ -179,6 +179,7 @@ Record read_record(const std::string& path, const std::function<void(const Progr
 std::string record_file(const std::string& path) { return parted(path).first; }
 
 std::vector<std::string> records_in(const std::string& path) {
+    if (record_file(path) != path) return {path};
     const std::vector<std::string> records = paths_of(path, hdf5::read_file(path, "A record", arms_of));
     return records.empty() ? std::vector{path} : records;
 }

@@ -27,7 +27,7 @@ private:
 };
 
 /// The records of a file, by the paths that `read_record` takes: its own, or FILE:ARM for each group that the root's
-/// attribute `arms` names. Throws InputError where it cannot be read.
+/// attribute `arms` names; of FILE:ARM that one. Throws InputError where it cannot be read.
 std::vector<std::string> records_in(const std::string& path);
 /// The file of such a path.
 std::string record_file(const std::string& path);

@@ -35,7 +35,7 @@ ColumnReport column_report(const ScenarioResults& results, const ArmResults& arm
     std::vector<double> values = trials ? figure_values(results, arm, c) : std::vector<double>();
     const auto published = published_for(results.scenario, column.name);
     ColumnReport report{column.name, column.unit, summary_of(column_moments(arm, c)), {}, std::nullopt,
-                        place_of(published, arm.name, values), std::nullopt};
+                        place_of(published, arm.name, values), std::nullopt, column.places};
     if (has_bootstrap(column.name))
         report.bootstrap95 = trials ? bootstrap_mean_interval(
                                           values, root_seed, results.scenario.name + "/" + arm.name + "/" + column.name)

@@ -2,102 +2,123 @@
 
 #include <credence/text.hpp>
 
+#include "report/words.hpp"
+
 #include <algorithm>
 
 namespace credence {
 
 namespace {
 
-/// The names that a part of the report has at the points of a grid, each once, in the report's order.
-template <class Part, class Name>
-std::vector<std::string> names_of(const std::set<std::string>& scenarios, const std::vector<Part>& parts,
-                                  const Name& name_of) {
-    std::vector<std::string> names;
-    for (const Part& part : parts)
-        if (scenarios.count(part.scenario) > 0 &&
-            std::find(names.begin(), names.end(), name_of(part)) == names.end())
-            names.push_back(name_of(part));
-    return names;
+std::vector<std::string> keys_of(const SweepPoint& point) {
+    std::vector<std::string> keys;
+    for (const SweepCoordinate& one : point.at) keys.push_back(one.key);
+    return keys;
 }
 
-template <class Map>
-auto found_in(const Map& map, const typename Map::key_type& key) -> typename Map::mapped_type {
-    const auto found = map.find(key);
-    return found == map.end() ? nullptr : found->second;
+// An arm and a pair differ in these.
+std::string name_of(const ArmReport& arm) { return arm.arm; }
+std::string name_of(const Comparison& pair) { return pair.name(); }
+const char* kind_of(const ArmReport&) { return ""; }
+const char* kind_of(const Comparison&) { return ", trial by trial"; }
+bool is_shown(const ColumnReport& column) { return column.places.sweep; }
+bool is_shown(const ComparedColumn& column) { return column.places.sweep_pairs; }
+const Summary& summary_of(const ColumnReport& column) { return column.summary; }
+const Summary& summary_of(const ComparedColumn& column) { return column.paired.difference; }
+
+/// The columns that are shown: first those that have no meaning for pairs, as NEES and NIS.
+template <class Column>
+std::vector<const Column*> shown(const std::vector<Column>& columns) {
+    std::vector<const Column*> found;
+    for (const Column& column : columns)
+        if (is_shown(column)) found.push_back(&column);
+    std::ranges::stable_partition(found, [](const Column* column) { return !column->places.sweep_pairs; });
+    return found;
 }
 
-}  // namespace
-
-SweptReport::SweptReport(const Report& report) : report_(report) {
-    std::vector<SweepPoint> places;
-    for (const Scenario& scenario : report.scenarios) places.push_back(scenario.sweep);
-    grids_ = grids_of(places);
-    for (const ArmReport& arm : report.arms) {
-        arms_[{arm.scenario, arm.arm}] = &arm;
-        if (!arm.not_run()) run_.insert(arm.scenario);
+/// The keys, and the quantities after them.
+template <class Part>
+Table new_table(const Grid& grid, const Part& part) {
+    std::vector<std::string> heads = grid.keys;
+    constexpr bool is_arm = std::is_same_v<Part, ArmReport>;
+    if (is_arm) heads.push_back("verdict");
+    for (const auto* column : shown(part.columns)) {
+        if (column->name == "nees_ratio") heads.push_back("NEES/n");
+        else if (column->name == "nis_ratio") heads.push_back("NIS/m");
+        else if (column->name == "log_score") heads.push_back("log score");
+        else heads.push_back(column->name + (column->unit == "1" ? "" : " [" + column->unit + "]"));
     }
-    points_have_sections_ = credence::points_have_sections(swept_scenarios(report));
-    for (const Comparison& pair : report.pairs) pairs_[{pair.scenario, pair.name()}] = &pair;
+    if (is_arm) heads.push_back("failed");
+    return {grid.of + ", " + name_of(part) + " by point" + kind_of(part) + ": mean ± 95 %", heads, grid.keys.size()};
 }
 
-const ArmReport* SweptReport::arm(const GridPoint& point, const std::string& name) const {
-    return found_in(arms_, {scenario(point), name});
-}
-
-const Comparison* SweptReport::pair(const GridPoint& point, const std::string& name) const {
-    return found_in(pairs_, {scenario(point), name});
-}
-
-std::vector<std::string> SweptReport::arm_names(const Grid& grid) const {
-    return names_of(names_of_points(grid), report_.arms, [](const ArmReport& arm) { return arm.arm; });
-}
-
-std::vector<std::string> SweptReport::pair_names(const Grid& grid) const {
-    return names_of(names_of_points(grid), report_.pairs, [](const Comparison& pair) { return pair.name(); });
-}
-
-std::set<std::string> SweptReport::names_of_points(const Grid& grid) const {
-    std::set<std::string> names;
-    for (const GridPoint& point : grid.points) names.insert(scenario(point));
-    return names;
-}
-
-namespace {
-
-/// These names, and behind them the columns that neither every world nor one of credence's has: a user's own.
-template <class Columns>
-std::vector<std::string> and_own(std::vector<std::string> names, const Columns& columns) {
-    static const std::set<std::string> usual{"trace_P",    "unseen",       "pose_error", "squared_error", "nees_ratio",
-                                             "nis_ratio", "mean_trace_P", "log_score",  "path_length"};
-    for (const auto& column : columns)
-        if (!usual.contains(column.name)) names.push_back(column.name);
-    return names;
+/// The values of the keys, the first of which leads to the point's section, and the quantities after them.
+template <class Part>
+std::vector<Cell> row_of(const Scenario& point, const Part& part, bool has_section, bool has_run) {
+    std::vector<Cell> cells;
+    for (const SweepCoordinate& one : point.sweep.at)
+        cells.push_back(Cell::Piece{one.value, to_number(one.value),
+                                    has_section && cells.empty() ? "scenario:" + point.name : ""});
+    constexpr bool is_arm = std::is_same_v<Part, ArmReport>;
+    if constexpr (is_arm) cells.push_back(verdict_cell(part));
+    for (const auto* column : shown(part.columns))
+        cells.push_back(is_arm || has_run ? mean_cell(summary_of(*column).mean, summary_of(*column).ci95)
+                                          : Cell("not run yet"));
+    if constexpr (is_arm) cells.push_back(failed_cell(part));
+    return cells;
 }
 
 }  // namespace
 
-std::vector<SweptColumn> swept_columns(const ArmReport& arm) {
-    std::vector<SweptColumn> columns;
-    for (const std::string& name : and_own({"nees_ratio", "nis_ratio", "trace_P", "log_score"}, arm.columns))
-        for (const ColumnReport& column : arm.columns)
-            if (column.name == name) columns.push_back({column.name, column.unit, column.summary});
-    return columns;
+std::set<std::string> swept_scenarios(const Report& report) {
+    std::set<std::string> swept;
+    for (const Scenario& scenario : report.scenarios)
+        if (is_swept(scenario)) swept.insert(scenario.name);
+    return swept;
 }
 
-std::vector<SweptColumn> swept_columns(const Comparison& pair) {
-    std::vector<SweptColumn> columns;
-    for (const std::string& name :
-         and_own({"trace_P", "unseen", "pose_error", "squared_error", "log_score"}, pair.columns))
-        for (const ComparedColumn& column : pair.columns)
-            if (column.name == name) columns.push_back({column.name, column.unit, column.paired.difference});
-    return columns;
+bool points_have_sections(const std::set<std::string>& swept) {
+    constexpr std::size_t most = 12;
+    return swept.size() <= most;
+}
+
+std::vector<Grid> grids_of(const Report& report) {
+    std::vector<Grid> grids;
+    for (const Scenario& scenario : report.scenarios) {
+        if (!is_swept(scenario)) continue;
+        const std::vector<std::string> keys = keys_of(scenario.sweep);
+        auto grid = std::ranges::find_if(
+            grids, [&](const Grid& one) { return one.of == scenario.sweep.of && one.keys == keys; });
+        if (grid == grids.end()) grid = grids.insert(grid, {scenario.sweep.of, keys, {}});
+        grid->points.emplace(scenario.name, &scenario);
+    }
+    return grids;
+}
+
+std::vector<SweptTable> tables_of(const Report& report, const Grid& grid) {
+    const bool sections = points_have_sections(swept_scenarios(report));
+    std::set<std::string> run;
+    for (const ArmReport& arm : report.arms)
+        if (!arm.not_run()) run.insert(arm.scenario);
+    std::vector<SweptTable> tables;
+    const auto add = [&](const auto& part) {
+        const auto point = grid.points.find(part.scenario);
+        if (point == grid.points.end()) return;
+        const std::string head = name_of(part) + kind_of(part);
+        auto table = std::ranges::find(tables, head, &SweptTable::head);
+        if (table == tables.end()) table = tables.insert(table, {head, new_table(grid, part)});
+        table->table.row(row_of(*point->second, part, sections, run.contains(part.scenario)));
+    };
+    for (const ArmReport& arm : report.arms) add(arm);
+    for (const Comparison& pair : report.pairs) add(pair);
+    return tables;
 }
 
 SweepColumns::SweepColumns(const Report& report) {
     for (const Scenario& scenario : report.scenarios) {
-        if (SweptReport::swept(scenario)) places_[scenario.name] = scenario.sweep;
-        for (const SweepCoordinate& one : scenario.sweep.at)
-            if (std::find(keys_.begin(), keys_.end(), one.key) == keys_.end()) keys_.push_back(one.key);
+        if (is_swept(scenario)) places_[scenario.name] = scenario.sweep;
+        for (const std::string& key : keys_of(scenario.sweep))
+            if (std::ranges::find(keys_, key) == keys_.end()) keys_.push_back(key);
     }
 }
 

@@ -14,7 +14,7 @@ const std::vector<std::string>& status_names() {
 
 Column log_score_column() {
     return {"log_score", "mean over the steps of the negative log-likelihood of the truth", "nat", ColumnType::real,
-            nan};
+            nan, {.watch = false}};
 }
 
 std::vector<Column> status_columns() {

@@ -63,15 +63,19 @@ Charts charts_of(const SlamState& state) {
 std::vector<Column> trial_columns(const SlamState& state) {
     std::vector<Column> columns{
             {"trace_P", "trace of the covariance after the last update", trace_unit(state), ColumnType::real, nan},
-            {"unseen", "features not seen, summed over the poses after the first", "1", ColumnType::integer, -1},
+            {"unseen", "features not seen, summed over the poses after the first", "1", ColumnType::integer, -1,
+             {.sweep = false}},
             {"pose_error", "squared error of the estimated pose, summed over all poses", trace_unit(state),
-             ColumnType::real, nan},
-            {"nees_ratio", "mean over the steps of NEES / state dimension", "1", ColumnType::real, nan},
-            {"nis_ratio", "sum of NIS over the steps / sum of measurement rows", "1", ColumnType::real, nan},
+             ColumnType::real, nan, {.sweep = false}},
+            {"nees_ratio", "mean over the steps of NEES / state dimension", "1", ColumnType::real, nan,
+             {.sweep_pairs = false}},
+            {"nis_ratio", "sum of NIS over the steps / sum of measurement rows", "1", ColumnType::real, nan,
+             {.sweep_pairs = false}},
             {"mean_trace_P", "mean over the steps of the trace of the covariance", trace_unit(state),
-             ColumnType::real, nan},
+             ColumnType::real, nan, {false, false, false}},
             log_score_column(),
-            {"path_length", "length of the robot's true path", state.length_unit, ColumnType::real, nan}};
+            {"path_length", "length of the robot's true path", state.length_unit, ColumnType::real, nan,
+             {false, false, false}}};
     for (Column& column : status_columns()) columns.push_back(std::move(column));
     return columns;
 }

@@ -71,13 +71,13 @@ TEST_CASE("page: a mixed verdict has all of its reasons beside it") {
     CHECK_THAT(why, Contains("optimistic (") && Contains("; pessimistic ("));
 }
 
-TEST_CASE("page: the curves of a sweep come before its tables, its points are folded, and units have raised powers") {
+TEST_CASE("page: the tables of a sweep come before its points, which are folded, and units have raised powers") {
     const Workplace work;
     REQUIRE(work.credence("run " + seed_scenario("kf-circle-constant") +
                           " --trials 30 --quiet -o s.h5 --sweep noise.deformation=0.1,0.2,0.3")
                 .exit_code == 0);
     const std::string page = work.credence("report s.h5 --format html").out;
-    CHECK(page.find(">Curves</h3>") < page.find("by point: mean"));
+    CHECK(page.find("by point: mean") < page.find("Everything of this point"));
     CHECK(count_of(page, "class=\"arm\"") == 0);  // their verdicts are in the table
     CHECK(count_of(page, "<summary>Everything of this point</summary>") == 3);
     const std::string without_scenarios = page.substr(0, page.find("Everything of this point"));

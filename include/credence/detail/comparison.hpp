@@ -15,6 +15,7 @@ struct ComparedColumn {
     std::string name, unit;
     PairedComparison paired;
     double holm_p = 0;      ///< Wilcoxon's p, corrected for everything that was compared with it
+    ColumnPlaces places{};
 };
 
 /// Arm a minus arm b, over the trials that both have.

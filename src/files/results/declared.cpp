@@ -4,6 +4,7 @@
 
 #include <credence/ini.hpp>
 #include "scenario/state_series.hpp"
+#include <credence/detail/own_simulation.hpp>
 #include <credence/detail/worlds.hpp>
 #include <credence/text.hpp>
 
@@ -116,6 +117,9 @@ ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>
         parse_groups(list_entries(hdf5::read_text(group, "groups")), static_cast<int>(scenario.components.size()),
                      hdf5::attribute_place(group, "groups"));
     results.columns = keep == Keep::trials ? read_columns(arm) : read_aggregated_columns(arm);
+    for (const Column& usual : own_columns(scenario, {}))
+        for (Column& column : results.columns)
+            if (column.name == usual.name) column.places = usual.places;
     results.all_series = StateSeries(scenario.components, scenario.groups,
                                    hdf5::has_link(arm, "nis_total") ? Innovations::given : Innovations::none)
                           .list;

@@ -21,6 +21,15 @@ Json side_json(const ComparedSide& side) {
             {"failed_trials", side.failed_trials()}};
 }
 
+/// What is said of a column; CSV has the same.
+Json column_json(const ComparedPair& pair, const ComparedColumn& column) {
+    const auto c = static_cast<std::size_t>(&column - pair.comparison.columns.data());
+    Json json = compared_json(column);
+    json["mean_a"] = pair.a.mean[c];
+    json["mean_b"] = pair.b.mean[c];
+    return json;
+}
+
 Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
     Json json{{"scenario", pair.comparison.scenario},
               {"a", pair.comparison.a},
@@ -40,33 +49,23 @@ Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
         for (const ComparedColumn& column : pair.comparison.columns)
             if (differs(column) && (column.paired.difference.mean < 0) == lower) names.push_back(column.name);
     }
-    const auto column_json = [&](const ComparedColumn& column) {
-        const auto f = static_cast<std::size_t>(&column - pair.comparison.columns.data());
-        Json one = compared_json(column);
-        one["mean_a"] = pair.a.mean[f];
-        one["mean_b"] = pair.b.mean[f];
-        return one;
-    };
-    add_columns(json, pair.comparison.columns, column_json, behind);
+    add_columns(
+        json, pair.comparison.columns, [&](const ComparedColumn& column) { return column_json(pair, column); }, behind);
     return json;
 }
 
-std::string csv_of(const ComparedPair& pair, std::size_t column) {
-    const ComparedColumn& compared = pair.comparison.columns[column];
-    const PairedComparison& paired = compared.paired;
-    const Summary& difference = paired.difference;
-    std::vector<Cell> cells{pair.comparison.scenario,
-                            pair.comparison.a,
-                            pair.comparison.b,
-                            compared.name,
-                            compared.unit,
-                            exact_cell(static_cast<double>(paired.pairs))};
-    for (const double value :
-         {pair.a.mean[column], pair.b.mean[column], difference.mean, difference.standard_error, difference.ci95.low,
-          difference.ci95.high, paired.bootstrap95.low, paired.bootstrap95.high, difference.median,
-          difference.standard_deviation, paired.wins_a, paired.wins_b, paired.ties, paired.wilcoxon_z,
-          paired.wilcoxon_p, compared.holm_p, paired.effect_size, paired.variance_reduction})
-        cells.push_back(exact_cell(value));
+/// The numbers of a row, by their names in JSON; of an interval there are both ends.
+constexpr const char* csv_numbers[] = {"mean_a", "mean_b", "mean", "se", "ci95", "bootstrap95", "median", "sd",
+                                       "below", "above", "ties", "wilcoxon_z", "wilcoxon_p", "holm_p", "effect_size",
+                                       "variance_reduction"};
+
+std::string csv_of(const ComparedPair& pair, const ComparedColumn& column) {
+    const Json json = column_json(pair, column);
+    std::vector<Cell> cells{pair.comparison.scenario, pair.comparison.a, pair.comparison.b, column.name, column.unit,
+                            std::to_string(column.paired.pairs)};
+    for (const char* name : csv_numbers)
+        for (const Json& number : json[name].is_array() ? json[name] : Json::array({json[name]}))
+            cells.push_back(exact_cell(number.get<double>()));
     return csv_row(cells);
 }
 
@@ -84,7 +83,7 @@ std::string compare_csv(const CompareReport& report) {
         "scenario,a,b,name,unit,pairs,mean_a,mean_b,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,"
         "median,sd,below,above,ties,wilcoxon_z,wilcoxon_p,holm_p,effect_size,variance_reduction\n";
     for (const ComparedPair& pair : report.pairs)
-        for (std::size_t f = 0; f < pair.comparison.columns.size(); ++f) text += csv_of(pair, f);
+        for (const ComparedColumn& column : pair.comparison.columns) text += csv_of(pair, column);
     return text;
 }
 

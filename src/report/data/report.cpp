@@ -114,7 +114,7 @@ Json arm_json(const Report& report, const ArmReport& arm) {
     if (arm.gaps.missing > 0) head["missing_steps"] = gaps_json(arm.gaps);
     if (arm.cause) head["failed_most"] = cause_json(*arm.cause);
     for (const Scenario& scenario : report.scenarios)
-        if (scenario.name == arm.scenario && SweptReport::swept(scenario)) head["sweep"] = sweep_json(scenario.sweep);
+        if (scenario.name == arm.scenario && is_swept(scenario)) head["sweep"] = sweep_json(scenario.sweep);
     Json json;
     json["verdict"] = verdict_name(arm.consistency.verdict);
     if (const std::string reason = no_claim_text(arm); !reason.empty()) json["reason"] = reason;

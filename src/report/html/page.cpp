@@ -61,7 +61,7 @@ Html contents(const Report& report) {
     if (report.scenarios.size() < 2) return {};
     Html items;
     for (const Scenario& scenario : report.scenarios) {
-        if (SweptReport::swept(scenario)) continue;
+        if (is_swept(scenario)) continue;
         std::set<std::string> shown;  // each badge once
         Html badges;
         for (const ArmReport* arm : part_of(report, scenario).arms)
@@ -74,6 +74,22 @@ Html contents(const Report& report) {
            "\n</nav>\n"_html;
 }
 
+/// The tables by point of every sweep; empty without one.
+Html sweeps(const Report& report) {
+    Html html;
+    std::size_t number = 0;
+    for (const Grid& grid : grids_of(report)) {
+        const Html id = escaped("sweep:" + std::to_string(number++));
+        Html tables;
+        for (const SweptTable& one : tables_of(report, grid)) tables += html_of(one.table);
+        html += "<section aria-labelledby=\""_html + id + "\">\n"_html +
+                element("h2", escaped("Sweep of " + grid.of + " over " + joined(grid.keys)),
+                        "id=\""_html + id + "\""_html) +
+                "\n"_html + tables + "</section>\n"_html;
+    }
+    return html;
+}
+
 /// All sections on the trials of a scenario.
 Html evidence_of_trials(const Part& part) {
     if (std::ranges::all_of(part.arms, &ArmReport::not_run)) return {};
@@ -81,14 +97,14 @@ Html evidence_of_trials(const Part& part) {
     return part.arms.front()->curves.empty() ? tables + charts(part) : charts(part) + tables;
 }
 
-/// A point of a sweep is folded: the page would be too long to find the curves.
+/// A point of a sweep is folded: the page would be too long to find the tables by point.
 Html scenario_section(const Part& part) {
     const std::string& title = part.scenario.title;
     const Html body = findings(part) + evidence_of_trials(part) + scenario_part(part);
     return "<section class=\"scenario\" aria-labelledby=\""_html + section_id(part.scenario.name) + "\">\n"_html +
            element("h2", escaped(part.scenario.name), "id=\""_html + section_id(part.scenario.name) + "\""_html) +
            "\n"_html + (title.empty() ? Html() : paragraph(title)) +
-           (SweptReport::swept(part.scenario) ? folded("Everything of this point", body, InPrint::open) : body) +
+           (is_swept(part.scenario) ? folded("Everything of this point", body, InPrint::open) : body) +
            "</section>\n"_html;
 }
 
@@ -113,7 +129,7 @@ std::string report_html(const Report& report, const PageOrigin& origin) {
     Html body = verdicts(report) + contents(report) + sweeps(report);
     const bool points_too = points_have_sections(swept_scenarios(report));
     for (const Scenario& scenario : report.scenarios)
-        if (points_too || !SweptReport::swept(scenario)) body += scenario_section(part_of(report, scenario));
+        if (points_too || !is_swept(scenario)) body += scenario_section(part_of(report, scenario));
     body += provenance(report, origin) + reproduction(report, origin) + terms();
     return document("credence: " + origin.file, intro(report, origin), body);
 }

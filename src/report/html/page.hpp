@@ -33,9 +33,6 @@ std::string verdict_counts(const Report& report);
 /// A line for every arm: the verdict and the first reason for it.
 Html verdicts(const Report& report);
 
-/// Every sweep: curves along a swept key, and tables by point; empty without a sweep.
-Html sweeps(const Report& report);
-
 /// The findings of every arm, with place and time.
 Html findings(const Part& part);
 
@@ -62,8 +59,7 @@ Html chart(const std::string& caption, const Html& svg);
 Html chart_group(const std::string& head, const std::string& text, const Html& drawings);
 /// The text in place of charts of distributions, where no trial is kept.
 Html no_distributions(Keep keep);
-/// Names beside their marks; legend of the arms.
-Html legend(const std::vector<std::string>& names);
+/// The arms' names beside their marks.
 Html legend(const Part& part);
 
 Html equivalence_chart(const Part& part);

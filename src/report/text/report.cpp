@@ -49,6 +49,24 @@ std::string verdicts_part(const std::vector<const ArmReport*>& arms) {
     return table_text(table);
 }
 
+/// The tables by point.
+std::string sweeps_part(const Report& report) {
+    std::string text;
+    for (const Grid& grid : grids_of(report)) {
+        std::vector<std::string> keys;
+        for (std::size_t k = 0; k < grid.keys.size(); ++k) {
+            std::set<std::string> values;
+            for (const auto& [name, point] : grid.points) values.insert(point->sweep.at[k].value);
+            keys.push_back(grid.keys[k] + " (" + std::to_string(values.size()) + " values)");
+        }
+        text += wrapped("sweep of " + grid.of + " over " + joined(keys) + ": mean ± 95 %") + "\n";
+        for (const SweptTable& one : tables_of(report, grid)) text += "  " + one.head + "\n" + table_text(one.table, 4);
+        text += "\n";
+    }
+    return text.empty() ? text
+                        : text + "Of each point by itself, --format html, json and csv have all that was found.\n";
+}
+
 }  // namespace
 
 std::string report_text(const Report& report) {
@@ -62,8 +80,8 @@ std::string report_text(const Report& report) {
     const std::vector<const ArmReport*> arms = arms_by_themselves(report);
     text += verdicts_part(arms);
     for (const Scenario& scenario : report.scenarios)
-        if (!SweptReport::swept(scenario)) text += scenario_detail(report, scenario);
-    const std::string sweeps = sweep_text(report);
+        if (!is_swept(scenario)) text += scenario_detail(report, scenario);
+    const std::string sweeps = sweeps_part(report);
     return text + (sweeps.empty() || arms.empty() ? "" : "\n") + sweeps;
 }
 

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <set>
 
 namespace credence {
 
@@ -81,15 +80,12 @@ Snapshot snapshot_of(const std::string& path, RunState state, const Study& study
     return snapshot;
 }
 
-/// Columns for which a line has no room.
-const std::set<std::string> not_watched{"mean_trace_P", "log_score", "path_length"};
-
 }  // namespace
 
 std::vector<std::size_t> watched_columns(const std::vector<Column>& columns) {
     std::vector<std::size_t> watched;
     for (std::size_t c = 0; c < columns.size(); ++c)
-        if (is_reported(columns[c]) && !not_watched.contains(columns[c].name)) watched.push_back(c);
+        if (is_reported(columns[c]) && columns[c].places.watch) watched.push_back(c);
     return watched;
 }
 

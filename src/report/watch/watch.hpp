@@ -13,8 +13,7 @@
 
 namespace credence {
 
-/// The columns whose means a snapshot shows: all numbers of a trial but mean_trace_P and log_score, for which a line
-/// has no room. Pairs are compared by the first one, which is trace_P in every world.
+/// The columns whose means a snapshot shows, as they are declared. Pairs are compared by the first one, which is trace_P in every world.
 std::vector<std::size_t> watched_columns(const std::vector<Column>& columns);
 
 /// One arm, over its trials so far; failed ones are left out of the means.

@@ -88,15 +88,19 @@ bool is_part_of(const ComponentGroup& group, int n) {
 
 std::vector<Column> own_columns(const Scenario& scenario, const OwnReport& report) {
     const std::string unit = squared_unit(scenario.components, scenario.groups.front());
-    const auto real = [&](const std::string& name, const std::string& long_name, const std::string& of) {
-        return Column{name, long_name, of, ColumnType::real, nan};
+    const auto real = [&](const std::string& name, const std::string& long_name, const std::string& of,
+                          const ColumnPlaces& places = {}) {
+        return Column{name, long_name, of, ColumnType::real, nan, places};
     };
     std::vector<Column> columns{real("trace_P", "trace of the covariance after the last step", unit)};
     columns.insert(columns.end(), report.columns.begin(), report.columns.end());
-    columns.push_back(real("squared_error", "squared error of the whole state, summed over the steps", unit));
-    columns.push_back(real("nees_ratio", "mean over the steps of NEES / state dimension", "1"));
-    columns.push_back(real("nis_ratio", "sum of NIS over the steps / sum of measurement rows", "1"));
-    columns.push_back(real("mean_trace_P", "mean over the steps of the trace of the covariance", unit));
+    columns.push_back(
+        real("squared_error", "squared error of the whole state, summed over the steps", unit, {.sweep = false}));
+    columns.push_back(real("nees_ratio", "mean over the steps of NEES / state dimension", "1", {.sweep_pairs = false}));
+    columns.push_back(
+        real("nis_ratio", "sum of NIS over the steps / sum of measurement rows", "1", {.sweep_pairs = false}));
+    columns.push_back(
+        real("mean_trace_P", "mean over the steps of the trace of the covariance", unit, {false, false, false}));
     columns.push_back(log_score_column());
     for (Column& column : status_columns()) columns.push_back(std::move(column));
     return columns;

@@ -94,21 +94,15 @@ Html no_distributions(Keep keep) {
     return element("p", escaped("No chart of how trials and pairs are spread: " + no_trials_note())) + "\n"_html;
 }
 
-Html legend(const std::vector<std::string>& names) {
+Html legend(const Part& part) {
     Html items;
-    for (std::size_t i = 0; i < names.size(); ++i) {
+    for (std::size_t i = 0; i < part.arms.size(); ++i) {
         Svg key(36, 12);
         key.line({0, 6}, {36, 6}, "line " + series_class(i));
         key.mark({18, 6}, i, {});
-        items += " <span>"_html + key.sign("key") + " "_html + escaped(names[i]) + "</span>"_html;
+        items += " <span>"_html + key.sign("key") + " "_html + escaped(part.arms[i]->arm) + "</span>"_html;
     }
     return element("p", items, "class=\"legend\""_html) + "\n"_html;
-}
-
-Html legend(const Part& part) {
-    std::vector<std::string> names;
-    for (const ArmReport* arm : part.arms) names.push_back(arm->arm);
-    return legend(names);
 }
 
 Html equivalence_chart(const Part& part) {
