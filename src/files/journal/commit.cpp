@@ -235,9 +235,4 @@ std::string commit_start_bytes(std::uint32_t scenario, const CommitStart& start,
     return record.take();
 }
 
-std::string commit_bytes(std::uint32_t scenario, const CommitStart& start, Keep keep, const std::string& values,
-                         const std::string& totals) {
-    return commit_start_bytes(scenario, start, keep, values.size() + totals.size()) + values + totals;
-}
-
 }  // namespace credence

@@ -114,9 +114,7 @@ CommitStart commit_of(const std::vector<std::int64_t>& blocks, std::int64_t tria
 void put_shard(ByteWriter& to, const Shard& shard);
 Shard get_shard(ByteReader& from);
 
-/// A commit without its checksum; and its bytes before values and totals of the given size.
-std::string commit_bytes(std::uint32_t scenario, const CommitStart& start, Keep keep, const std::string& values,
-                         const std::string& totals);
+/// The bytes of a commit before values and totals of the given size.
 std::string commit_start_bytes(std::uint32_t scenario, const CommitStart& start, Keep keep, std::size_t size_after);
 
 /// The checksum over a journal's header and the checksums of its commits, continued with one more checksum.

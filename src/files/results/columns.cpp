@@ -1,6 +1,6 @@
 #include "files/results/columns.hpp"
 
-#include <credence/text.hpp>
+#include "files/results/format.hpp"
 
 #include <algorithm>
 
@@ -45,12 +45,7 @@ std::vector<double> read_rows(const Dataset& dataset, const Checksums& expected,
 
 std::vector<double> read_rows(const Dataset& dataset, ColumnType type, const Checksums& sums, std::int64_t first,
                               std::int64_t count) {
-    switch (type) {
-        case ColumnType::real: return read_rows<double>(dataset, sums, first, count);
-        case ColumnType::integer: return read_rows<std::int32_t>(dataset, sums, first, count);
-        case ColumnType::status: break;
-    }
-    return read_rows<std::int8_t>(dataset, sums, first, count);
+    return as_stored(type, [&]<class T>(T) { return read_rows<T>(dataset, sums, first, count); });
 }
 
 /// The columns of an arm, in a file that stays open for them.
@@ -136,12 +131,8 @@ private:
 CheckedColumn check_column(const Handle& group, const Column& column, std::int64_t trials) {
     const Dataset dataset(group, column.name);
     dataset.require_extents({static_cast<hsize_t>(trials)});
-    switch (column.type) {
-        case ColumnType::real: return check<double>(dataset);
-        case ColumnType::integer: return check<std::int32_t>(dataset);
-        case ColumnType::status: break;
-    }
-    return check_statuses(dataset);
+    if (column.type == ColumnType::status) return check_statuses(dataset);
+    return as_stored(column.type, [&]<class T>(T) { return check<T>(dataset); });
 }
 
 std::shared_ptr<const KeptColumns> columns_of_file(std::shared_ptr<const Handle> file, const std::string& path,

@@ -22,6 +22,17 @@ inline const std::string run_group = "run";
 inline const std::string computed_by_fact = "computed_by", version_fact = "credence_version",
                          revision_fact = "git_revision";
 
+/// Calls use(T()) with the type T in which files hold the values of a column.
+template <class Use>
+auto as_stored(ColumnType type, const Use& use) {
+    switch (type) {
+        case ColumnType::real: return use(double());
+        case ColumnType::integer: return use(std::int32_t());
+        case ColumnType::status: break;
+    }
+    return use(std::int8_t());
+}
+
 /// The bits of NaN depend on the processor; files hold one fixed NaN.
 inline double one_nan(double value) { return value == value ? value : nan; }
 

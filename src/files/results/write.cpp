@@ -19,39 +19,23 @@ namespace {
 using hdf5::Dimension;
 using hdf5::Handle;
 
-/// A column's values in the type of the file.
-template <class T>
-hdf5::Handle write_values(const Handle& group, const Column& column, const ScenarioResults& results,
-                          const ArmResults& arm, std::size_t c) {
-    return hdf5::new_long_dataset<T>(group, column.name, results.trials, {column.long_name, column.unit},
-                                     [&](std::int64_t first, std::int64_t count) {
-                                         const std::vector<double> values = arm.columns.values(c, first, count);
-                                         std::vector<T> converted(values.size());
-                                         std::transform(values.begin(), values.end(), converted.begin(),
-                                                        [](double value) { return static_cast<T>(one_nan(value)); });
-                                         return converted;
-                                     });
-}
-
 void write_column(const Handle& group, const Dimension& trial, const ScenarioResults& results, const ArmResults& arm,
                   std::size_t c) {
     const Column& column = results.columns[c];
-    switch (column.type) {
-        case ColumnType::real: {
-            const Handle variable = write_values<double>(group, column, results, arm, c);
-            hdf5::attach(variable, {&trial});
-            return hdf5::write_numbers<double>(variable, "_FillValue", {one_nan(column.fill)});
-        }
-        case ColumnType::integer: {
-            const Handle variable = write_values<std::int32_t>(group, column, results, arm, c);
-            hdf5::attach(variable, {&trial});
-            return hdf5::write_numbers<std::int32_t>(variable, "_FillValue", {static_cast<std::int32_t>(column.fill)});
-        }
-        case ColumnType::status: break;
-    }
-    const Handle variable = write_values<std::int8_t>(group, column, results, arm, c);
-    hdf5::attach(variable, {&trial});
-    write_status_flags(variable);
+    as_stored(column.type, [&]<class T>(T) {
+        const auto stored = [](double value) { return static_cast<T>(one_nan(value)); };
+        const auto values = [&](std::int64_t first, std::int64_t count) {
+            const std::vector<double> read = arm.columns.values(c, first, count);
+            std::vector<T> converted(read.size());
+            std::transform(read.begin(), read.end(), converted.begin(), stored);
+            return converted;
+        };
+        const Handle variable = hdf5::new_long_dataset<T>(group, column.name, results.trials,
+                                                          {column.long_name, column.unit}, values);
+        hdf5::attach(variable, {&trial});
+        if (column.type == ColumnType::status) write_status_flags(variable);
+        else hdf5::write_numbers<T>(variable, "_FillValue", {stored(column.fill)});
+    });
 }
 
 std::string role_name(SeriesRole role) {

@@ -17,13 +17,10 @@ void write_columns(const Handle& group, const Trajectory& trajectory) {
     for (std::size_t c = 0; c < trajectory.columns.size(); ++c) {
         const std::string& name = trajectory.columns[c].name;
         const double value = trajectory.column_values[c];
-        switch (trajectory.columns[c].type) {
-            case ColumnType::real: hdf5::write_number(group, name, one_nan(value)); break;
-            case ColumnType::integer: hdf5::write_number(group, name, static_cast<std::int32_t>(value)); break;
-            case ColumnType::status:
-                hdf5::write_number(group, name, static_cast<std::int8_t>(value));
-                hdf5::write_text(group, name + "_text", status_names().at(static_cast<std::size_t>(value)));
-        }
+        const ColumnType type = trajectory.columns[c].type;
+        as_stored(type, [&]<class T>(T) { hdf5::write_number(group, name, static_cast<T>(one_nan(value))); });
+        if (type == ColumnType::status)
+            hdf5::write_text(group, name + "_text", status_names().at(static_cast<std::size_t>(value)));
     }
 }
 
@@ -47,27 +44,20 @@ Handle write_as(const Handle& group, const TrajectoryVariable& variable, const h
 
 /// Where a value may not exist, the file says what stands for it.
 void write_variable(const Handle& group, const TrajectoryVariable& variable, const hdf5::Dimensions& along) {
-    const bool may_lack = variable.dimensions.front() == "pose";
-    switch (variable.numbers) {
-        case TrajectoryNumbers::real: {
-            const Handle written = write_as<double>(group, variable, along);
-            if (may_lack) hdf5::write_numbers<double>(written, "_FillValue", {one_nan(NAN)});
-            break;
-        }
-        case TrajectoryNumbers::integer: {
-            const Handle written = write_as<std::int32_t>(group, variable, along);
-            if (may_lack) hdf5::write_numbers<std::int32_t>(written, "_FillValue", {-1});
-            break;
-        }
-        case TrajectoryNumbers::flag: {
-            const Handle written = write_as<std::int8_t>(group, variable, along);
-            std::vector<std::int8_t> codes{-1};
-            for (const char c : variable.flags)
-                if (c == ' ') codes.push_back(static_cast<std::int8_t>(codes.back() + 1));
-            hdf5::write_numbers<std::int8_t>(written, "flag_values", codes);
-            hdf5::write_text(written, "flag_meanings", variable.flags);
-        }
-    }
+    const auto write = [&]<class T>(T fill) {
+        Handle written = write_as<T>(group, variable, along);
+        if (variable.dimensions.front() == "pose" && variable.numbers != TrajectoryNumbers::flag)
+            hdf5::write_numbers<T>(written, "_FillValue", {fill});
+        return written;
+    };
+    if (variable.numbers == TrajectoryNumbers::real) return void(write(one_nan(NAN)));
+    if (variable.numbers == TrajectoryNumbers::integer) return void(write(std::int32_t{-1}));
+    const Handle written = write(std::int8_t{-1});
+    std::vector<std::int8_t> codes{-1};
+    for (const char c : variable.flags)
+        if (c == ' ') codes.push_back(static_cast<std::int8_t>(codes.back() + 1));
+    hdf5::write_numbers<std::int8_t>(written, "flag_values", codes);
+    hdf5::write_text(written, "flag_meanings", variable.flags);
 }
 
 void write_trajectory(const Handle& scenario_group, const Trajectory& trajectory) {
