@@ -114,31 +114,4 @@ std::vector<SweptTable> tables_of(const Report& report, const Grid& grid) {
     return tables;
 }
 
-SweepColumns::SweepColumns(const Report& report) {
-    for (const Scenario& scenario : report.scenarios) {
-        if (is_swept(scenario)) places_[scenario.name] = scenario.sweep;
-        for (const std::string& key : keys_of(scenario.sweep))
-            if (std::ranges::find(keys_, key) == keys_.end()) keys_.push_back(key);
-    }
-}
-
-std::vector<Cell> SweepColumns::heads() const {
-    std::vector<Cell> heads;
-    if (!keys_.empty()) heads.push_back("sweep_of");
-    heads.insert(heads.end(), keys_.begin(), keys_.end());
-    return heads;
-}
-
-std::vector<Cell> SweepColumns::cells(const std::string& scenario) const {
-    if (keys_.empty()) return {};
-    const auto found = places_.find(scenario);
-    const SweepPoint place = found == places_.end() ? SweepPoint{} : found->second;
-    std::vector<Cell> cells{place.of};
-    for (const std::string& key : keys_) {
-        const auto one = std::ranges::find(place.at, key, &SweepCoordinate::key);
-        cells.push_back(one == place.at.end() ? Cell() : Cell(one->value));
-    }
-    return cells;
-}
-
 }  // namespace credence

@@ -40,17 +40,4 @@ struct SweptTable {
 /// Of every arm, then of every pair, in the order in which they appear; the points are in the study's order.
 std::vector<SweptTable> tables_of(const Report& report, const Grid& grid);
 
-/// Columns that only the CSV of a study with sweeps has: the swept scenario, and every swept key. Blank for a scenario
-/// without them.
-class SweepColumns {
-public:
-    explicit SweepColumns(const Report& report);
-    std::vector<Cell> heads() const;
-    std::vector<Cell> cells(const std::string& scenario) const;
-
-private:
-    std::map<std::string, SweepPoint> places_;
-    std::vector<std::string> keys_;
-};
-
 }  // namespace credence

@@ -109,25 +109,42 @@ Handle open_file(const std::string& path) {
     throw refused;
 }
 
-std::vector<std::string> link_names(const Handle& group) {
+namespace {
+
+std::vector<std::string> names_of_links(const Handle& group, H5_index_t order, hsize_t most, const std::string& problem) {
     H5G_info_t info;
     const std::string place = place_of(group);
-    check(H5Gget_info(group.id(), &info), place, "cannot be listed");
+    check(H5Gget_info(group.id(), &info), place, "HDF5 cannot read it");
+    if (info.nlinks > most) throw Error(place, "holds more than " + std::to_string(most) + " objects");
     std::vector<std::string> names;
     for (hsize_t i = 0; i < info.nlinks; ++i) {
         const auto get = [&](char* to, std::size_t room) {
-            const ssize_t length = H5Lget_name_by_idx(group.id(), ".", H5_INDEX_CRT_ORDER, H5_ITER_INC, i, to, room,
-                                                      H5P_DEFAULT);
-            if (length <= 0) throw failure(place, "cannot be listed in the order in which it was made");
+            const ssize_t length = H5Lget_name_by_idx(group.id(), ".", order, H5_ITER_INC, i, to, room, H5P_DEFAULT);
+            if (length <= 0) throw failure(place, problem);
             return static_cast<std::size_t>(length);
         };
-        std::string name(get(nullptr, 0), '\0');
-        get(name.data(), name.size() + 1);
-        // HDF5 writes no such name, and would interpret it as a path, which could lead through links to other files.
-        if (name.find('/') != std::string::npos) throw Error(place_of(group, name), "has a name with a slash");
-        names.push_back(hard(group, name));
+        names.emplace_back(get(nullptr, 0), '\0');
+        get(names.back().data(), names.back().size() + 1);
     }
     return names;
+}
+
+}  // namespace
+
+std::vector<std::string> link_names(const Handle& group) {
+    const std::vector<std::string> names =
+        names_of_links(group, H5_INDEX_CRT_ORDER, HSIZE_UNDEF, "cannot be listed in the order in which it was made");
+    for (const std::string& name : names) {
+        // HDF5 writes no such name, and would interpret it as a path, which could lead through links to other files.
+        if (name.find('/') != std::string::npos) throw Error(place_of(group, name), "has a name with a slash");
+        hard(group, name);
+    }
+    return names;
+}
+
+std::vector<std::string> sorted_link_names(const Handle& group) {
+    constexpr hsize_t most = 100000;
+    return names_of_links(group, H5_INDEX_NAME, most, "HDF5 cannot list it");
 }
 
 std::vector<std::string> attribute_names(const Handle& object) {

@@ -26,6 +26,8 @@ std::string kind_text(hid_t type);
 /// could lead to other files and are refused.
 std::vector<std::string> link_names(const Handle& group);
 std::vector<std::string> attribute_names(const Handle& object);
+/// Those of links in alphabetical order: other programs need not keep the order of their creation.
+std::vector<std::string> sorted_link_names(const Handle& group);
 bool has_link(const Handle& group, const std::string& name);
 bool has_attribute(const Handle& object, const std::string& name);
 

@@ -100,26 +100,6 @@ void RealDataset::read(const Extents& first, const Extents& count, std::vector<d
           "is damaged: HDF5 cannot read its values");
 }
 
-std::vector<std::string> sorted_link_names(const Handle& group) {
-    constexpr hsize_t most = 100000;
-    const std::string place = place_of(group);
-    H5G_info_t info;
-    check(H5Gget_info(group.id(), &info), place, "HDF5 cannot read it");
-    if (info.nlinks > most) throw Error(place, "holds more than " + std::to_string(most) + " objects");
-    std::vector<std::string> names;
-    for (hsize_t i = 0; i < info.nlinks; ++i) {
-        const auto name = [&](char* to, std::size_t size) {
-            return H5Lget_name_by_idx(group.id(), ".", H5_INDEX_NAME, H5_ITER_INC, i, to, size, H5P_DEFAULT);
-        };
-        const ssize_t size = name(nullptr, 0);
-        if (size < 0) throw failure(place, "HDF5 cannot list it");
-        std::string text(static_cast<std::size_t>(size), '\0');
-        if (name(text.data(), text.size() + 1) < 0) throw failure(place, "HDF5 cannot list it");
-        names.push_back(std::move(text));
-    }
-    return names;
-}
-
 std::string read_any_text(const Handle& object, const std::string& name) {
     const std::string place = attribute_place(object, name);
     const Handle attribute(H5Aopen(object.id(), name.c_str(), H5P_DEFAULT), H5Aclose, place, "HDF5 cannot open it");

@@ -34,9 +34,6 @@ private:
 /// Throws where the bits of a type of integers lie beyond its bytes: HDF5 would read them there.
 void require_bits(const Handle& type, const std::string& place);
 
-/// Names of a group's links in alphabetical order: programs need not keep the order of their creation.
-std::vector<std::string> sorted_link_names(const Handle& group);
-
 /// A text attribute without padding: fixed or variable length, ASCII or UTF-8, a scalar or a list, whose entries are
 /// joined by commas.
 std::string read_any_text(const Handle& object, const std::string& name);

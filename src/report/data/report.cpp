@@ -10,6 +10,7 @@
 #include "report/table.hpp"
 #include "report/words.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace credence {
@@ -258,6 +259,27 @@ private:
     std::string text_;
 };
 
+/// Every swept key of a study, in the order of their first points.
+std::vector<std::string> swept_keys(const Report& report) {
+    std::vector<std::string> keys;
+    for (const Scenario& scenario : report.scenarios)
+        for (const SweepCoordinate& one : scenario.sweep.at)
+            if (std::ranges::find(keys, one.key) == keys.end()) keys.push_back(one.key);
+    return keys;
+}
+
+/// The swept scenario and the values of these keys; blank for a scenario without them.
+Cells place_in_sweep(const Report& report, const std::string& scenario, const std::vector<std::string>& keys) {
+    if (keys.empty()) return {};
+    const SweepPoint place = std::ranges::find(report.scenarios, scenario, &Scenario::name)->sweep;
+    Cells cells{place.of};
+    for (const std::string& key : keys) {
+        const auto one = std::ranges::find(place.at, key, &SweepCoordinate::key);
+        cells.push_back(one == place.at.end() ? Cell() : Cell(one->value));
+    }
+    return cells;
+}
+
 }  // namespace
 
 std::string report_json(const Report& report) {
@@ -267,24 +289,26 @@ std::string report_json(const Report& report) {
 }
 
 std::string report_csv(const Report& report) {
-    const SweepColumns sweep(report);
+    const std::vector<std::string> keys = swept_keys(report);
     const Cells heads{"scenario", "arm", "trials", "failed", "name", "unit", "mean", "se", "ci95_low", "ci95_high",
                       "bootstrap95_low", "bootstrap95_high", "median", "sd", "published", "percentile", "verdict"};
-    std::string text = csv_row(heads + sweep.heads() + Cells{"failed_trials"});
+    std::string text = csv_row(heads + (keys.empty() ? Cells() : Cells{"sweep_of"} + Cells(keys.begin(), keys.end())) +
+                               Cells{"failed_trials"});
     for (const ArmReport& arm : report.arms) {
-        const Cells end =
-            Cells{verdict_word(arm)} + sweep.cells(arm.scenario) + Cells{std::to_string(arm.failed_trials())};
+        const Cells end = Cells{verdict_word(arm)} + place_in_sweep(report, arm.scenario, keys) +
+                          Cells{std::to_string(arm.failed_trials())};
         for (const ColumnReport& column : arm.columns)
             text += row_of(start_of(arm, column.name, column.unit), column.summary, column.bootstrap95,
                            column.published, end);
         text += EvidenceRows(arm, end).text();
     }
-    for (const Comparison& pair : report.pairs)
+    for (const Comparison& pair : report.pairs) {
+        const Cells end = Cells{""} + place_in_sweep(report, pair.scenario, keys) + Cells{""};
         for (const ComparedColumn& column : pair.columns)
             text +=
                 row_of({pair.scenario, pair.name(), std::to_string(column.paired.pairs), "", column.name, column.unit},
-                       column.paired.difference, column.paired.bootstrap95, std::nullopt,
-                       Cells{""} + sweep.cells(pair.scenario) + Cells{""});
+                       column.paired.difference, column.paired.bootstrap95, std::nullopt, end);
+    }
     return text;
 }
 
