@@ -3,6 +3,7 @@
 
 #include <credence/detail/store.hpp>
 #include <credence/report.hpp>
+#include <credence/slam_columns.hpp>
 
 #include "catch.hpp"
 #include "report/compare/compare.hpp"
@@ -13,9 +14,18 @@
 
 namespace credence::test {
 
+inline std::string page_of(const Report& report) { return report_html(report, {"r.h5", {}, "test"}); }
+
+/// How often a text has a part.
+inline std::size_t count_of(const std::string& text, const std::string& part) {
+    std::size_t count = 0;
+    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+    return count;
+}
+
 /// Every format of it.
 inline std::vector<std::string> renderings(const Report& report) {
-    return {report_json(report), report_text(report), report_csv(report), report_html(report, {"r.h5", {}, "test"})};
+    return {report_json(report), report_text(report), report_csv(report), page_of(report)};
 }
 inline std::vector<std::string> renderings(const CompareReport& report) {
     return {compare_json(report), compare_text(report), compare_csv(report), compare_html(report, "test")};
@@ -25,6 +35,19 @@ inline Study read_back(const Study& study) {
     const TemporaryFolder folder;  // the results keep the file open
     write_results(folder / "r.h5", study, {});
     return read_results(folder / "r.h5", 0).study;
+}
+
+/// Makes trials of an arm look as the engine stores those that failed; recount() then counts them.
+inline void fail_trials(ScenarioResults& results, std::size_t arm, std::size_t first, std::size_t count,
+                        Status status = Status::non_finite, int pose = 3) {
+    for (std::size_t i = first; i < first + count; ++i) {
+        std::vector<double> values;
+        for (const auto& column : results.arms[arm].columns.in_memory()) values.push_back(column[i]);
+        values[column_status] = static_cast<double>(status);
+        values[column_status_pose] = pose;
+        fill_failed(results.columns, values.data());
+        for (std::size_t c = 0; c < values.size(); ++c) results.arms[arm].columns.in_memory()[c][i] = values[c];
+    }
 }
 
 /// `make` gives a report of a study.

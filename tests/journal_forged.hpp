@@ -56,6 +56,16 @@ struct Made {
         record.totals = totals_of(study.scenarios.front());
         REQUIRE(record.bytes() == bytes.substr(ends[0]));
     }
+    /// Any byte of the totals that is changed under a right checksum is refused or harmless.
+    void flip_totals() const {
+        for (std::size_t at = 0; at < record.totals.size(); ++at) {
+            ForgedCommit bad = record;
+            bad.totals[at] = static_cast<char>(bad.totals[at] ^ 0x81);
+            put_bytes(path + ".journal", header + bad.bytes());
+            CAPTURE(at);
+            REQUIRE_NOTHROW(refusal<InputError>([&] { opened(path, asked); }));
+        }
+    }
     /// The message with which a run refuses to continue a journal of these commits.
     std::string said(const std::vector<ForgedCommit>& records) const {
         std::string bytes = header;

@@ -1,7 +1,7 @@
 #pragma once
 // Records, drawn here, and what is in them computed plainly.
 
-#include <credence/evidence.hpp>
+#include <credence/report.hpp>
 
 #include "files/hdf5/read.hpp"
 #include "judgement_support.hpp"
@@ -99,11 +99,37 @@ inline void write_drawn(const Handle& root, const DrawnRecord& record) {
                  flat(record.innovation_covariance));
 }
 
+/// Errors and the diagonals of P.
+inline void write_variances(const Handle& root, const DrawnRecord& record) {
+    write_errors(root, record);
+    std::vector<double> values;
+    for (const Eigen::MatrixXd& P : record.covariance)
+        values.insert(values.end(), P.diagonal().begin(), P.diagonal().end());
+    write_values(root, "covariance", extents_of(record, {record.n}), values);
+}
+
+/// Writes a drawn record with a text attribute.
+inline std::function<void(const Handle& root)> drawn_with(const DrawnRecord& record, const std::string& name,
+                                                          const std::string& text) {
+    return [=](const Handle& root) {
+        write_drawn(root, record);
+        hdf5::write_text(root, name, text);
+    };
+}
+
 /// The record that `write` writes, read.
 inline Record read_written(const std::function<void(const Handle& root)>& write) {
     const TemporaryFolder folder;
     write_file(folder / "record.h5", write);
     return read_record(folder / "record.h5");
+}
+
+/// The report of what `write` writes, and of a drawn record.
+inline Report report_written(const std::function<void(const Handle& root)>& write, const Limits& limits = {}) {
+    return make_record_report(read_written(write), "record.h5", limits);
+}
+inline Report report_of(const DrawnRecord& record) {
+    return report_written([&](const Handle& root) { write_drawn(root, record); });
 }
 
 /// e' P^-1 e of some components, plainly.

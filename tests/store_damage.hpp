@@ -12,10 +12,12 @@ namespace credence::test {
 
 using hdf5::Handle;
 
+using Change = std::function<void(const Handle& root)>;
+
 /// A way to damage a results file, and a part of what reading it must say.
 struct Damage {
     std::string said;
-    std::function<void(const Handle& root)> apply;
+    Change apply;
 };
 
 inline Handle open(const Handle& root, const std::string& path) {
@@ -47,6 +49,25 @@ inline void replace(const Handle& root, const std::string& path, const hdf5::Ext
     hdf5::write_dataset(root, path, hdf5::type_of<T>(), values.data(), extents, {"", ""});
 }
 
+// The same as changes.
+inline Change without(const std::string& path) {
+    return [=](const Handle& root) { remove(root, path); };
+}
+inline Change without_attribute(const std::string& path, const std::string& name) {
+    return [=](const Handle& root) { H5Adelete(open(root, path).id(), name.c_str()); };
+}
+inline Change with_text(const std::string& path, const std::string& name, const std::string& text) {
+    return [=](const Handle& root) { set_text(root, path, name, text); };
+}
+template <class T>
+Change with_number(const std::string& path, const std::string& name, T value) {
+    return [=](const Handle& root) { set_number<T>(root, path, name, value); };
+}
+template <class T>
+Change replaced(const std::string& path, const hdf5::Extents& extents, const std::vector<T>& values = {}) {
+    return [=](const Handle& root) { replace<T>(root, path, extents, values); };
+}
+
 /// So that what reads behind the checksum is reached.
 inline void forget_checksum(const Handle& dataset) { H5Adelete(dataset.id(), hdf5::checksum_name); }
 
@@ -62,8 +83,7 @@ inline void scale(const Handle& root, const std::string& path, double factor) {
 }
 
 /// A copy of a file after `damage`.
-inline std::string damaged_copy(const std::string& good, const std::string& bad,
-                                const std::function<void(const Handle& root)>& damage) {
+inline std::string damaged_copy(const std::string& good, const std::string& bad, const Change& damage) {
     std::filesystem::copy_file(good, bad, std::filesystem::copy_options::overwrite_existing);
     damage(Handle(H5Fopen(bad.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, bad, "cannot open it"));
     return bad;
@@ -114,19 +134,14 @@ inline std::string text_of(const std::string& name, const std::string& key, cons
     return scenario_text(other);
 }
 
-/// A file of the study is refused after each damage by itself, with what that says, in one line.
-inline void require_refused(const Study& study, const std::vector<Damage>& damages) {
+/// A file is refused after each damage by itself, with what that says, in one line. `write` writes it with a change.
+template <class Write, class Read>
+void require_refused(const std::vector<Damage>& damages, const Write& write, const Read& read) {
     const TemporaryFolder folder;
-    write_results(folder / "good.h5", study, {{"fact", "x"}});
-    const std::string good = bytes_of(folder / "good.h5"), path = folder / "bad.h5";
+    const std::string path = folder / "bad.h5";
     for (const Damage& damage : damages) {
-        put_bytes(path, good);
-        {
-            const hdf5::QuietErrors quiet;
-            const Handle root(H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, path, "cannot open it");
-            damage.apply(root);
-        }
-        const std::string said = refusal<InputError>([&] { read_results(path); });
+        write(path, damage.apply);
+        const std::string said = refusal<InputError>([&] { read(path); });
         INFO("expected: " << damage.said);
         INFO("said: " << said);
         CHECK(said.find(damage.said) != std::string::npos);
@@ -134,6 +149,17 @@ inline void require_refused(const Study& study, const std::vector<Damage>& damag
         CHECK(said.ends_with("."));
         CHECK(said.find('\n') == std::string::npos);
     }
+}
+
+/// Likewise a results file of the study.
+inline void require_refused(const Study& study, const std::vector<Damage>& damages) {
+    const TemporaryFolder folder;
+    write_results(folder / "good.h5", study, {{"fact", "x"}});
+    const auto write = [&](const std::string& path, const Change& change) {
+        const hdf5::QuietErrors quiet;
+        damaged_copy(folder / "good.h5", path, change);
+    };
+    require_refused(damages, write, [](const std::string& path) { read_results(path); });
 }
 
 }  // namespace credence::test

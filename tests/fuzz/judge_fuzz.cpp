@@ -1,12 +1,7 @@
 // Files as records for judge: each is refused by an InputError of one line, or gets its verdict.
 
-#include "hdf5_checksums.hpp"
-#include "hdf5_mutator.hpp"
-#include "other_files.hpp"
-#include "require.hpp"
-#include "scratch_file.hpp"
+#include "hdf5_target.hpp"
 
-#include <credence/error.hpp>
 #include <credence/record.hpp>
 #include <credence/report.hpp>
 
@@ -15,9 +10,6 @@ using namespace credence::fuzz;
 
 namespace {
 
-/// A verdict takes bootstraps, ten times as long as reading: it is computed for one in eight inputs, and only for small
-/// ones.
-bool is_chosen(std::span<const std::uint8_t> image) { return metadata_checksum(image) % 8 == 0; }
 bool is_small(const ScenarioResults& results) {
     return results.trials <= 64 && results.steps() <= 16 && results.state_size() <= 16 &&
            results.all_series.size() <= 64;
@@ -43,13 +35,5 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const ScratchFile file(data, size);
-    const OnlyFile only(file.path());
-    try {
-        judge_file(file.path(), is_chosen({data, size}));
-    } catch (const InputError& error) {
-        require_one_line(error.what());
-    }
-    require_all_closed();
-    return 0;
+    return try_file(data, size, [&](const std::string& path) { judge_file(path, is_chosen({data, size})); });
 }

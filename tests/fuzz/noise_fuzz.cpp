@@ -1,11 +1,7 @@
 // Files as noise records: each is refused by an InputError of one line, or all that it says is there.
 
-#include "hdf5_mutator.hpp"
-#include "other_files.hpp"
-#include "require.hpp"
-#include "scratch_file.hpp"
+#include "hdf5_target.hpp"
 
-#include <credence/error.hpp>
 #include <credence/detail/store.hpp>
 
 #include <cmath>
@@ -28,17 +24,11 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-    const ScratchFile file(data, size);
-    const OnlyFile only(file.path());
-    try {
-        const NoiseRecord record = read_noise_record(file.path());
+    return try_file(data, size, [](const std::string& path) {
+        const NoiseRecord record = read_noise_record(path);
         require_values(record.odometry, record.poses, 1, 3);
         for (const auto* values : {&record.walk, &record.deformation, &record.measurement})
             require_values(*values, record.poses, record.features, 2);
         require_values(record.edge, record.poses, record.edges, 2);
-    } catch (const InputError& error) {
-        require_one_line(error.what());
-    }
-    require_all_closed();
-    return 0;
+    });
 }

@@ -2,6 +2,7 @@
 
 #include <credence/consistency.hpp>
 #include <credence/record.hpp>
+#include "files/results/format.hpp"
 #include "slam/trial/problem.hpp"
 #include "slam_steps.hpp"
 #include "worlds/deformable/deformable.hpp"
@@ -18,16 +19,6 @@ namespace credence::test::judgement_run_test {
 namespace {
 
 constexpr std::uint64_t seed = 3;
-
-/// The component groups without the whole state, as a record names them.
-std::string groups_text(const DeformableSettings& scenario) {
-    std::string text;
-    for (const ComponentGroup& block : state_groups(scenario))
-        if (block.name != "all")
-            text += (text.empty() ? "" : ", ") + block.name + " " + std::to_string(block.first) + ":" +
-                    std::to_string(block.first + block.count);
-    return text;
-}
 
 struct Values {
     std::vector<double> error, covariance, innovation, innovation_covariance;
@@ -62,7 +53,7 @@ void write_record(const std::string& path, const DeformableSettings& scenario, s
     H5LTmake_dataset_double(file, "covariance", 4, of_state, values.covariance.data());
     H5LTmake_dataset_double(file, "innovation", 3, of_rows, values.innovation.data());
     H5LTmake_dataset_double(file, "innovation_covariance", 4, of_rows, values.innovation_covariance.data());
-    H5LTset_attribute_string(file, "/", "groups", groups_text(scenario).c_str());
+    H5LTset_attribute_string(file, "/", "groups", groups_text(state_groups(scenario)).c_str());
     H5Fclose(file);
 }
 

@@ -18,11 +18,6 @@ void leave_out(DrawnRecord& record, int trial, int step) {
     for (int j = 0; j < record.n; ++j) record.hide(trial, step, j);
 }
 
-Report report_of(const DrawnRecord& record) {
-    return make_record_report(read_written([&](const Handle& root) { write_drawn(root, record); }), "record.h5",
-                              Limits());
-}
-
 /// Errors of half of each run grow and shrink again, so that large ones have large neighbours.
 DrawnRecord with_waves() {
     DrawnRecord record(trials, steps, 2);
@@ -77,12 +72,11 @@ TEST_CASE("gaps: a hint where they lie beside large errors, and none where they 
 TEST_CASE("units: squares of different units are not added, and those of one have its unit") {
     const DrawnRecord record(50, 4, 3);
     const auto report_with = [&](const std::string& units) {
-        return make_record_report(read_written([&](const Handle& root) {
-                                      write_drawn(root, record);
-                                      hdf5::write_text(root, "groups", "pose 0:3");
-                                      if (!units.empty()) hdf5::write_text(root, "component_units", units);
-                                  }),
-                                  "record.h5", Limits());
+        return report_written([&](const Handle& root) {
+            write_drawn(root, record);
+            hdf5::write_text(root, "groups", "pose 0:3");
+            if (!units.empty()) hdf5::write_text(root, "component_units", units);
+        });
     };
     const auto sums = [&](int components) {
         double error = 0, variance = 0;

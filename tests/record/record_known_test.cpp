@@ -56,14 +56,6 @@ Judged judged(const DrawnRecord& drawn, const std::string& component_names, cons
     }));
 }
 
-void write_variances_alone(const Handle& root, const DrawnRecord& drawn) {
-    write_errors(root, drawn);
-    std::vector<double> values;
-    for (const Eigen::MatrixXd& P : drawn.covariance)
-        values.insert(values.end(), P.diagonal().begin(), P.diagonal().end());
-    write_values(root, "covariance", extents_of(drawn, {drawn.n}), values);
-}
-
 /// Covariances of the groups alone: `pose` of every component but the last, and `turn` of the last.
 void write_of_groups(const Handle& root, const DrawnRecord& drawn) {
     write_errors(root, drawn);
@@ -91,8 +83,8 @@ TEST_CASE("record: components with an error and a variance of 0 at every step ar
 }
 
 TEST_CASE("record: components that are known exactly are left out of variances and of groups' covariances") {
-    const Judged space = judged(in_space(planar()), names, "pose 0 1 2 5", write_variances_alone),
-                 plane = judged(planar(), flat_names, "pose 0:3", write_variances_alone);
+    const Judged space = judged(in_space(planar()), names, "pose 0 1 2 5", write_variances),
+                 plane = judged(planar(), flat_names, "pose 0:3", write_variances);
     CHECK(space.troubles == 0);
     CHECK(space.report == plane.report);
     REQUIRE(space.sentences.size() == plane.sentences.size() + 1);

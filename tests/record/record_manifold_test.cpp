@@ -189,22 +189,18 @@ TEST_CASE("record: a manifold, chart or quaternion that cannot be is refused by 
                   "/estimate: does not fit: it is [10, 3, 7], and the manifold has 9 coordinates");
     check_refused(with("SE3", ""), "/@quaternion: is missing. Write wxyz or xyzw");
     check_refused(with("SE3", "zyxw"), "/@quaternion: is `zyxw`. Write wxyz or xyzw");
-    check_refused([&](const Handle& root) {
-        poses.write(root, "SE3", true, "wxyz");
-        H5Adelete(root.id(), "chart");
-    }, "/@chart: is missing. Write local or global");
-    check_refused([&](const Handle& root) {
-        poses.write(root, "SE3", true, "wxyz");
-        set_value(root, "estimate", 7 * 4 + 3, 2);
-    }, "/estimate: trial 1, step 1 (both counted from 0) has no unit quaternion at 3:7");
-    check_refused([&](const Handle& root) {
-        poses.write(root, "SE3", true, "wxyz");
-        remove(root, "truth");
-    }, "/truth: is missing, but /estimate is there");
-    check_refused([&](const Handle& root) {
-        poses.write(root, "SE3", true, "wxyz");
-        write_errors(root, poses.drawn);
-    }, "/estimate: is there, and `error` too");
+    const auto changed = [&](const Change& change) {
+        return [&, change](const Handle& root) {
+            poses.write(root, "SE3", true, "wxyz");
+            change(root);
+        };
+    };
+    check_refused(changed(without_attribute("/", "chart")), "/@chart: is missing. Write local or global");
+    check_refused(changed([](const Handle& root) { set_value(root, "estimate", 7 * 4 + 3, 2); }),
+                  "/estimate: trial 1, step 1 (both counted from 0) has no unit quaternion at 3:7");
+    check_refused(changed(without("truth")), "/truth: is missing, but /estimate is there");
+    check_refused(changed([&](const Handle& root) { write_errors(root, poses.drawn); }),
+                  "/estimate: is there, and `error` too");
 }
 
 }  // namespace credence::test::record_manifold_test

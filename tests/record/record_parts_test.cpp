@@ -20,18 +20,6 @@ DrawnRecord uncorrelated(double claimed) {
     return drawn;
 }
 
-std::vector<double> variances_of(const DrawnRecord& drawn) {
-    std::vector<double> values;
-    for (const Eigen::MatrixXd& P : drawn.covariance)
-        values.insert(values.end(), P.diagonal().begin(), P.diagonal().end());
-    return values;
-}
-
-void write_variances(const Handle& root, const DrawnRecord& drawn) {
-    write_errors(root, drawn);
-    write_values(root, "covariance", extents_of(drawn, {drawn.n}), variances_of(drawn));
-}
-
 std::vector<double> group_covariances(const DrawnRecord& drawn, const std::vector<int>& members) {
     std::vector<double> values;
     for (const Eigen::MatrixXd& P : drawn.covariance)
@@ -79,10 +67,7 @@ Consistency verdict_of(const Record& record) {
 
 TEST_CASE("record: of variances each component is judged by itself") {
     const DrawnRecord drawn(30, 4, 3);
-    const Record joint = read_written([&](const Handle& root) {
-        write_drawn(root, drawn);
-        hdf5::write_text(root, "groups", "x0 0, x1 1, x2 2, pair 0 2");
-    });
+    const Record joint = read_written(drawn_with(drawn, "groups", "x0 0, x1 1, x2 2, pair 0 2"));
     const Record record = read_written([&](const Handle& root) {
         write_variances(root, drawn);
         hdf5::write_text(root, "groups", "pair 0 2");
@@ -119,8 +104,7 @@ TEST_CASE("record: variances that are right are undecided, and wrong ones are fo
 }
 
 TEST_CASE("record: a report of variances says what it cannot judge, and no `nan`") {
-    Record record = read_written([&](const Handle& root) { write_variances(root, uncorrelated(1)); });
-    const Report report = make_record_report(std::move(record), "record.h5", 0.15);
+    const Report report = report_written([](const Handle& root) { write_variances(root, uncorrelated(1)); }, 0.15);
     const std::string text = report_text(report);
     INFO(text);
     CHECK(text.find("undecided") != std::string::npos);
@@ -132,10 +116,7 @@ TEST_CASE("record: a report of variances says what it cannot judge, and no `nan`
 
 TEST_CASE("record: covariances of groups without a joint one are those of the groups") {
     const DrawnRecord drawn(30, 4, 4);
-    const Record joint = read_written([&](const Handle& root) {
-        write_drawn(root, drawn);
-        hdf5::write_text(root, "groups", "pose 0 2, rest 3");
-    });
+    const Record joint = read_written(drawn_with(drawn, "groups", "pose 0 2, rest 3"));
     const Record record = read_written([&](const Handle& root) {
         write_errors(root, drawn);
         hdf5::write_text(root, "groups", "pose 0 2, rest 3");
@@ -154,10 +135,7 @@ TEST_CASE("record: covariances of groups without a joint one are those of the gr
 
 TEST_CASE("record: NEES alone, of groups and of the whole state, with their dimensions") {
     const DrawnRecord drawn(30, 4, 4);
-    const Record joint = read_written([&](const Handle& root) {
-        write_drawn(root, drawn);
-        hdf5::write_text(root, "groups", "pose 0:3, rest 3");
-    });
+    const Record joint = read_written(drawn_with(drawn, "groups", "pose 0:3, rest 3"));
     const auto write = [&](const Handle& root) {
         write_group(root, drawn, "pose", {0, 1, 2}, false);
         write_group(root, drawn, "rest", {3}, false);
@@ -177,7 +155,7 @@ TEST_CASE("record: NEES alone, of groups and of the whole state, with their dime
     CHECK_FALSE(all.results.has_joint_covariance);
     CHECK(all.results.not_judged.back() ==
           "The record has NEES and no errors: bias, directions and the size of the errors are not judged.");
-    CHECK(report_text(make_record_report(read_written(write), "record.h5", 0.15)).find("nan") == std::string::npos);
+    CHECK(report_text(report_written(write, 0.15)).find("nan") == std::string::npos);
 }
 
 TEST_CASE("record: a NEES that is negative or infinite, and a variance that is not positive, fail their trial") {

@@ -204,22 +204,14 @@ TEST_CASE("compare: the program compares, in every format") {
     const Outcome text = here.credence("compare one.h5");
     CHECK(text.exit_code == 0);
     CHECK(text.out.find("greedy.ekf - fixed.ekf, trial by trial: 300 pairs. Negative: greedy.ekf is lower.\n") == 0);
-    for (const char* part : {"trace_P: greedy.ekf ", "A - B ± 95 %", "bootstrap 95 %", "median", "A below", "A above",
-                             "equal", "Wilcoxon z", "p (Holm)", "d_z", "reduction", "unseen", "pose_error",
-                             "nees_ratio", "nis_ratio", "mean_trace_P"})
-        CHECK_THAT(text.out, Contains(part));
     const Json pairs = Json::parse(here.credence("compare one.h5 two.h5 --format json").out);
     REQUIRE(pairs.size() == 2);
     CHECK(pairs[0]["a"] == "two:fixed.ekf");
     CHECK(pairs[0]["pairs"] == 200);
     CHECK(pairs[0]["differences"]["filter.measurement"] == Json::array({"0.8", "1"}));
     CHECK(pairs[0]["nees_ratio"]["ci95"][0] > 0);
-    for (const char* figure : {"mean", "ci95", "bootstrap95", "median", "below", "above", "ties", "wilcoxon_z",
-                               "holm_p", "effect_size", "variance_reduction", "mean_a", "mean_b"})
-        CHECK(pairs[0]["trace_P"].contains(figure));
     CHECK(here.credence("compare two.h5 one.h5 --arms one:greedy,two:fixed --format csv -o t.csv").exit_code == 0);
     CHECK(here.shell("grep -c '^ekf-circle-constant,one:greedy.ekf,two:fixed.ekf,' t.csv").out == "8\n");
-    CHECK(here.shell("awk -F, '{print NF}' t.csv | sort -u").out == "24\n");
     CHECK_THAT(here.credence("compare --help").out, Contains("usage: credence compare FILE.h5"));
     CHECK_THAT(here.credence("--help").out, Contains("compare  "));
 }

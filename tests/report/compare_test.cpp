@@ -13,21 +13,6 @@ namespace credence::test::compare_test {
 using Catch::Contains;
 using Json = nlohmann::json;
 
-namespace {
-
-/// Makes trials of an arm look as the engine stores those that failed.
-void fail(ScenarioResults& results, std::size_t arm, std::size_t first, std::size_t count) {
-    for (std::size_t i = first; i < first + count; ++i) {
-        std::vector<double> values;
-        for (const auto& column : results.arms[arm].columns.in_memory()) values.push_back(column[i]);
-        values[column_status] = static_cast<double>(Status::non_finite);
-        fill_failed(results.columns, values.data());
-        for (std::size_t c = 0; c < values.size(); ++c) results.arms[arm].columns.in_memory()[c][i] = values[c];
-    }
-}
-
-}  // namespace
-
 TEST_CASE("compare: every number is computed from the columns") {
     const Study study = small_study(1, 300, 1);
     const CompareReport report = compared({{"small.h5", study}});
@@ -167,8 +152,8 @@ TEST_CASE("compare: in the matched translation world both arms see and are the s
 
 TEST_CASE("compare: trials that failed in one arm are no pairs, and the text says so first") {
     Study study = small_study(1, 300, 1);
-    fail(study.scenarios[0], 0, 0, 20);
-    fail(study.scenarios[0], 1, 10, 20);
+    fail_trials(study.scenarios[0], 0, 0, 20);
+    fail_trials(study.scenarios[0], 1, 10, 20);
     study.scenarios[0].arms[0].columns.in_memory()[column_status][100] = static_cast<double>(Status::lost);
     recount(study.scenarios[0]);
     const CompareReport report = compare_studies({{"failed.h5", study}}, std::nullopt);
@@ -185,7 +170,7 @@ TEST_CASE("compare: trials that failed in one arm are no pairs, and the text say
                          Contains("WARNING: 20 of 300 trials of heading-straight/greedy.ekf failed") &&
                          Contains("note: 1 trial of heading-straight/fixed.ekf is lost"));
     CHECK(text.find("WARNING") < text.find("trace_P:"));
-    fail(study.scenarios[0], 0, 0, 300);
+    fail_trials(study.scenarios[0], 0, 0, 300);
     const CompareReport none =
         compare_studies({{"failed.h5", study}}, read_arms("greedy.ekf,fixed.ekf", {"failed.h5"}));
     CHECK_THAT(compare_text(none), Contains("no pairs, nothing to compare") && !Contains("nan"));

@@ -1,7 +1,6 @@
 // What the page draws of a log is what is in it: errors within two sigma, NEES and NIS, at their times.
 
-#include <credence/report.hpp>
-
+#include "either_way.hpp"
 #include "record_support.hpp"
 
 #include <regex>
@@ -18,12 +17,11 @@ std::vector<double> times_of(const DrawnRecord& record) {
     return times;
 }
 
-Report report_of(const DrawnRecord& record, const std::vector<double>& times = {}) {
-    return make_record_report(read_written([&](const Handle& root) {
-                                  write_drawn(root, record);
-                                  if (!times.empty()) write_values(root, "time", {times.size()}, times);
-                              }),
-                              "record.h5", Limits());
+Report report_of(const DrawnRecord& record, const std::vector<double>& times) {
+    return report_written([&](const Handle& root) {
+        write_drawn(root, record);
+        write_values(root, "time", {times.size()}, times);
+    });
 }
 
 const RunCurves& curves_of(const Report& report) { return report.arms.front().curves.front(); }
@@ -63,7 +61,7 @@ std::vector<double> seconds(const Points& points) {
 TEST_CASE("log page: lines and bands are the record's errors, sigmas, NEES and NIS at their times") {
     const DrawnRecord record(1, 60, 2, 1);
     const std::vector<double> times = times_of(record);
-    const std::string page = report_html(report_of(record, times), {"record.h5", {}, "test"});
+    const std::string page = page_of(report_of(record, times));
     std::vector<double> errors, sigmas, nees, nis, across;
     for (std::size_t k = 0; k < 60; ++k) {
         errors.push_back(record.error[k](1));
@@ -115,7 +113,7 @@ TEST_CASE("log page: of a long log every stretch keeps its extremes, in its unit
     CHECK(std::ranges::is_sorted(curve.points, {}, &ErrorCurve::Point::step));
     CHECK(curve.steps == 4800);
     CHECK(curve.outside == outside);
-    CHECK(report_html(report, {"record.h5", {}, "test"}).find("largest at step 3334: 40 ") != std::string::npos);
+    CHECK(page_of(report).find("largest at step 3334: 40 ") != std::string::npos);
 }
 
 TEST_CASE("log page: long gaps, in steps or in time, are left open; the verdict does not know of times") {
@@ -133,7 +131,7 @@ TEST_CASE("log page: long gaps, in steps or in time, are left open; the verdict 
     CHECK(curves_of(timed).errors[0].steps == 279);
     CHECK(curves_of(timed).errors[1].points.front().step == 51);
     CHECK(report_json(plain) == report_json(timed));
-    const std::string page = report_html(timed, {"record.h5", {}, "test"});
+    const std::string page = page_of(timed);
     CHECK(page.find("class=\"gap\"") != std::string::npos);
     CHECK(page.find("NIS/m by step") == std::string::npos);
 }
@@ -143,9 +141,9 @@ TEST_CASE("log page: a run that fails is drawn up to there, and of many runs non
     record.covariance[40](0, 0) = -1;
     const Report failed = report_of(record), many = report_of(DrawnRecord(20, 5, 2));
     CHECK(curves_of(failed).errors[0].points.back().step == 39);
-    CHECK(report_html(failed, {"record.h5", {}, "test"}).find("record: error of x0 by step") != std::string::npos);
+    CHECK(page_of(failed).find("record: error of x0 by step") != std::string::npos);
     CHECK(many.arms.front().curves.empty());
-    CHECK(report_html(many, {"record.h5", {}, "test"}).find("record: error of") == std::string::npos);
+    CHECK(page_of(many).find("record: error of") == std::string::npos);
 }
 
 }  // namespace credence::test::log_page_test

@@ -16,24 +16,11 @@ using Catch::Contains;
 
 namespace {
 
-std::string page_of(const Report& report) { return report_html(report, {"study.h5", {}, "test"}); }
-
-std::size_t count_of(const std::string& text, const std::string& part) {
-    std::size_t count = 0;
-    for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
-    return count;
-}
-
 /// The drawing whose title begins so.
 std::string drawing_of(const std::string& page, const std::string& title) {
     const std::size_t at = page.find("-t\">" + title), from = page.rfind("<svg", at);
     REQUIRE(at != std::string::npos);
     return page.substr(from, page.find("</svg>", from) - from);
-}
-
-Report record_report(const DrawnRecord& record) {
-    return make_record_report(read_written([&](const Handle& root) { write_drawn(root, record); }), "record.h5",
-                              Limits());
 }
 
 }  // namespace
@@ -56,7 +43,7 @@ TEST_CASE("page: of a sensor that speaks at every tenth step each innovation has
     for (int i = 0; i < 20; ++i)
         for (int k = 0; k < 300; ++k)
             if (k % 10 != 9) record.innovation[record.at(i, k)].setConstant(std::nan(""));
-    const std::string page = page_of(record_report(record)),
+    const std::string page = page_of(report_of(record)),
                       drawing = drawing_of(page, "record: NIS/m of rows: all by step");
     CHECK(count_of(drawing, "class=\"mark") == 30);
 }
@@ -65,7 +52,7 @@ TEST_CASE("page: a mixed verdict has all of its reasons beside it") {
     DrawnRecord record(2000, 3, 2);
     for (Eigen::VectorXd& error : record.error) error(0) *= 1.6;
     for (Eigen::MatrixXd& P : record.covariance) P.col(1) *= 2, P.row(1) *= 2;
-    const Report report = record_report(record);
+    const Report report = report_of(record);
     REQUIRE(report.arms.front().consistency.verdict == Verdict::mixed);
     const std::string page = page_of(report), why = page.substr(page.find("class=\"why\""), 600);
     CHECK_THAT(why, Contains("optimistic (") && Contains("; pessimistic ("));
