@@ -14,7 +14,8 @@
 
 namespace credence::fuzz {
 
-/// `read` reads the input as a file, or refuses it by an InputError of one line; it opens no other, and leaves none open.
+/// `read` reads the input as a file, or refuses it by an InputError of one line; it opens no other, and leaves none
+/// open.
 template <class Read>
 int try_file(const std::uint8_t* data, std::size_t size, const Read& read) {
     const ScratchFile file(data, size);
@@ -28,7 +29,8 @@ int try_file(const std::uint8_t* data, std::size_t size, const Read& read) {
     return 0;
 }
 
-/// A report takes bootstraps, ten times as long as reading: it is made for one in eight inputs, and only for small ones.
+/// A report takes bootstraps, ten times as long as reading: it is made for one in eight inputs, and only for small
+/// ones.
 inline bool is_chosen(std::span<const std::uint8_t> image) { return metadata_checksum(image) % 8 == 0; }
 
 }  // namespace credence::fuzz

@@ -111,7 +111,8 @@ Handle open_file(const std::string& path) {
 
 namespace {
 
-std::vector<std::string> names_of_links(const Handle& group, H5_index_t order, hsize_t most, const std::string& problem) {
+std::vector<std::string> names_of_links(const Handle& group, H5_index_t order, hsize_t most,
+                                        const std::string& problem) {
     H5G_info_t info;
     const std::string place = place_of(group);
     check(H5Gget_info(group.id(), &info), place, "HDF5 cannot read it");

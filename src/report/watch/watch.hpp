@@ -13,7 +13,8 @@
 
 namespace credence {
 
-/// The columns whose means a snapshot shows, as they are declared. Pairs are compared by the first one, which is trace_P in every world.
+/// The columns whose means a snapshot shows, as they are declared. Pairs are compared by the first one, which is
+/// trace_P in every world.
 std::vector<std::size_t> watched_columns(const std::vector<Column>& columns);
 
 /// One arm, over its trials so far; failed ones are left out of the means.
