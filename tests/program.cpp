@@ -1,5 +1,7 @@
 #include "program.hpp"
 
+#include "catch.hpp"
+
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -47,6 +49,14 @@ Outcome Workplace::shell(const std::string& command) const {
     std::filesystem::remove(out);
     std::filesystem::remove(err);
     return outcome;
+}
+
+void check_refused(const Outcome& outcome, const std::string& said, int exit_code) {
+    CAPTURE(outcome.err, outcome.out);
+    CHECK(outcome.exit_code == exit_code);
+    CHECK_THAT(outcome.err, Catch::Contains(said));
+    CHECK(outcome.err.find('\n') == outcome.err.size() - 1);
+    CHECK(outcome.out.empty());
 }
 
 std::string seed_scenario(const std::string& name) { return CREDENCE_SOURCE "/experiments/seed/" + name + ".ini"; }

@@ -31,6 +31,13 @@ private:
     TemporaryFolder folder_;
 };
 
+/// The program refused it: one line on the error stream, which says `said`, and nothing on the other one.
+void check_refused(const Outcome& outcome, const std::string& said, int exit_code = 2);
+
+/// A scenario whose trials take next to no time.
+inline const std::string small_world =
+    "[scenario]\nname = small\nposes = 3\n[arms]\ncontrollers = fixed, greedy\n[planner]\nspeeds = 1\n";
+
 /// The project's own scenario files.
 std::string seed_scenario(const std::string& name);
 

@@ -135,9 +135,8 @@ TEST_CASE(
     here.write("small.ini",
                "[scenario]\nname = small\nposes = 2\n[arms]\ncontrollers = fixed\n[planner]\nspeeds = 1\n");
     const std::string run = " run small.ini --trials 1000 --quiet ";
-    const Outcome nowhere = here.credence(run + "--shard auto -o x.h5");
-    CHECK(nowhere.exit_code == 2);
-    CHECK_THAT(nowhere.err, Contains("credence run: invalid --shard auto (the variables of a task of a Slurm array"));
+    check_refused(here.credence(run + "--shard auto -o x.h5"),
+                  "credence run: invalid --shard auto (the variables of a task of a Slurm array");
     const std::string task =
         "SLURM_ARRAY_TASK_MIN=4 SLURM_ARRAY_TASK_MAX=8 SLURM_ARRAY_TASK_STEP=2 "
         "SLURM_ARRAY_TASK_COUNT=3 SLURM_ARRAY_TASK_ID=6 " CREDENCE_PROGRAM;
@@ -148,9 +147,7 @@ TEST_CASE(
     // Nothing but --shard auto listens to the launcher.
     CHECK(here.shell(task + run + "-o whole.h5").exit_code == 0);
     CHECK(read_results(here.path("whole.h5")).study.complete);
-    const Outcome unnamed = here.credence(run + "-o 'part-{shard}.h5'");
-    CHECK(unnamed.exit_code == 2);
-    CHECK_THAT(unnamed.err, Contains("there is no --shard that {shard} could stand for"));
+    check_refused(here.credence(run + "-o 'part-{shard}.h5'"), "there is no --shard that {shard} could stand for");
 }
 
 }  // namespace credence::test::launcher_test

@@ -11,9 +11,6 @@ using Catch::Contains;
 
 namespace {
 
-const std::string small_world =
-    "[scenario]\nname = small\nposes = 5\n[arms]\ncontrollers = fixed\n[planner]\nspeeds = 1\n";
-
 bool holds(const std::string& bytes, const std::string& text) { return bytes.find(text) != std::string::npos; }
 
 }  // namespace

@@ -100,11 +100,8 @@ TEST_CASE("cli: watch refuses what it cannot follow") {
              {"none.h5", "nothing to watch: neither none.h5 nor none.h5.journal is there. Check the name, or begin"},
              {"none.h5 --every 0", "invalid --every=0"},
              {"none.h5 --every often", "invalid --every=often"},
-             {"none.h5 --format csv", "invalid --format=csv"}}) {
-        const Outcome outcome = here.credence("watch " + arguments);
-        CHECK(outcome.exit_code == 2);
-        CHECK_THAT(outcome.err, Contains(why));
-    }
+             {"none.h5 --format csv", "invalid --format=csv"}})
+        check_refused(here.credence("watch " + arguments), why);
 }
 
 }  // namespace credence::test::watch_cli_test

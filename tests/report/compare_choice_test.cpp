@@ -227,12 +227,7 @@ TEST_CASE("compare: the program refuses bad input in one line with exit code 2, 
         REQUIRE(here.credence(study + "--set scenario.poses=2 --trials 300 --shard " + shard).exit_code == 0);
     const std::vector<std::string> before = here.names();
     const auto refused_with = [&](const std::string& arguments, const std::string& what) {
-        const Outcome outcome = here.credence("compare " + arguments);
-        INFO(outcome.err);
-        CHECK(outcome.exit_code == 2);
-        CHECK_THAT(outcome.err, Contains("credence compare: ") && Contains(what));
-        CHECK(outcome.err.find('\n') == outcome.err.size() - 1);
-        CHECK(outcome.out.empty());
+        check_refused(here.credence("compare " + arguments), what);
     };
     refused_with("", "no results file given");
     refused_with("one.h5 one.h5", "repeated file one.h5");

@@ -267,12 +267,9 @@ TEST_CASE("failed: the program's gate, its share and its refusals") {
     CHECK(all[0]["verdict"] != "failed");
     CHECK(all[0]["failed_limit"] == 1);
     for (const char* command : {"report r.h5", "judge r.h5", "compare r.h5"})
-        for (const char* share : {"-1%", "100.1%", "2", "nan", "inf", "x", "%"}) {
-            const Outcome refused = here.credence(std::string(command) + " --failed=" + share);
-            CAPTURE(command, share, refused.err);
-            CHECK(refused.exit_code == 2);
-            CHECK_THAT(refused.err, Contains("(must be from 0 to 100 %). Write 1% or 0.01."));
-        }
+        for (const char* share : {"-1%", "100.1%", "2", "nan", "inf", "x", "%"})
+            check_refused(here.credence(std::string(command) + " --failed=" + share),
+                          "(must be from 0 to 100 %). Write 1% or 0.01.");
     const Outcome replayed = here.credence("replay r.h5 --scenario ekf-straight-constant --arm fixed.ekf --trial 0");
     CHECK_THAT(replayed.out, Contains("trace(P) - dm^2 + rad^2, unseen -, pose error -, NEES/n -, NIS/m -, log score -\n"));
 }
