@@ -24,7 +24,8 @@ struct Attitude {
         keys.real("sensor.gyro", &Settings::gyro, 1e-9, 1, "sigma of a rate, each axis (rad/s)");
         keys.real("sensor.walk", &Settings::walk, 1e-12, 1, "sigma of the bias's step, each axis (rad/s)");
         keys.real("sensor.direction", &Settings::direction, 1e-6, 1, "sigma of a direction, each axis (1)");
-        keys.real("start.attitude", &Settings::sigma_attitude, 1e-6, 3, "sigma of the first attitude, each axis (rad)");
+        keys.real("start.attitude", &Settings::sigma_attitude, 1e-6, 3, "sigma of the first attitude, each axis",
+                  "rad");
         keys.real("start.bias", &Settings::sigma_bias, 1e-9, 1, "sigma of the first bias, each axis (rad/s)");
         keys.real("filter.gyro", &Settings::gyro_factor, 1e-6, 1e6, "factor on the believed sensor.gyro");
         keys.real("filter.walk", &Settings::walk_factor, 1e-6, 1e6, "factor on the believed sensor.walk");

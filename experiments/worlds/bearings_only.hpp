@@ -28,7 +28,7 @@ struct BearingsOnly {
         keys.real("noise.acceleration", &Settings::acceleration, 1e-9, 10, "sigma of the target's, each axis (m/s^2)");
         keys.real("start.range", &Settings::sigma_range, 1e-6, 1, "sigma of the first 1/range, as a share of it (1)");
         keys.real("start.speed", &Settings::sigma_speed, 1e-6, 1e3, "sigma of the rates times the range (m/s)");
-        keys.real("sensor.bearing", &Settings::sigma_bearing, 1e-6, 1, "sigma of a bearing (rad)");
+        keys.real("sensor.bearing", &Settings::sigma_bearing, 1e-6, 1, "sigma of a bearing", "rad");
         keys.choice("filter.chart", &Settings::chart, {"polar", "cartesian"}, "in which both filters are judged");
     }
     static std::vector<credence::Component> components(const Settings& s) {

@@ -34,7 +34,8 @@ struct Robot {
     }
     static void validate(const Settings& s) {
         if (s.x.size() != s.y.size())
-            throw credence::InputError("cannot place beacons (their x and y differ in number). Give as many of both.");
+            throw credence::InputError("cannot place beacons", "their x and y differ in number",
+                                       "Give as many of both");
     }
     static std::vector<credence::Component> components(const Settings&) {
         return {{"heading", "rad"}, {"x", "m"}, {"y", "m"}};

@@ -161,7 +161,7 @@ struct RecordArrays {
 };
 
 /// Reads a record in memory as if it were in a file, a part at a time; the arrays are only read. `name` names the
-/// scenario, as a file's path does. Throws InputError `PLACE: PROBLEM. REMEDY.`, its places those of a file.
+/// scenario, as a file's path does. Throws InputError `PLACE: PROBLEM. REMEDY.`, its places named as arrays.
 Record read_record(const RecordArrays& arrays, const std::string& name,
                    const std::function<void(const Progress&)>& progress = {}, int segments = segments_auto);
 

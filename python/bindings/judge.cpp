@@ -90,14 +90,10 @@ Said judge(const Arrays& arrays, const Texts& texts, const Lists& lists, const D
 
 Said judge_file(const nb::bytes& file, const nb::dict& options, const Listener& listener) {
     const std::string path = bytes_of(file);
-    try {
-        return judgement(path, options, listener, [&](const auto& progress, int segments) {
-            cli::check_kind(path, {cli::FileKind::record});
-            return read_record(path, progress, segments);
-        });
-    } catch (const InputError& error) {
-        throw InputError(shown(error.what()));  // Python takes no other text than UTF-8
-    }
+    return judgement(path, options, listener, [&](const auto& progress, int segments) {
+        cli::check_kind(path, {cli::FileKind::record});
+        return read_record(path, progress, segments);
+    });
 }
 
 /// Writes the totals of records of the same trials, which differ in their arms, as a results file.

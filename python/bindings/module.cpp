@@ -99,8 +99,7 @@ int run_program(const std::vector<nb::bytes>& arguments) {
 
 NB_MODULE(_core, module) {
     nb::set_leak_warnings(false);  // a forked process and a daemon thread leave things behind
-    nb::exception<InputError>(module, "InputError", PyExc_ValueError);
-    nb::exception<Failure>(module, "Failure", PyExc_RuntimeError);
+    bind_errors(module);
     module.def("command", command, nb::arg("name"), nb::arg("arguments"), nb::arg("options"),
                nb::arg("progress").none());
     module.def("program", run_program, nb::arg("arguments"));

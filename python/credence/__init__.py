@@ -14,7 +14,7 @@ import os
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from credence._core import Failure, InputError
+    from credence._errors import Failure, InputError
     from credence._record import Record, Run
     from credence.arm import Arm, Scenario
     from credence.judging import Verdict, assert_consistent, judge
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from credence.tuning import Tuned, tune
 
 _modules = {  # each with what it has for users
-    "_core": ("Failure", "InputError"),
+    "_errors": ("Failure", "InputError"),
     "_record": ("Record", "Run"),
     "arm": ("Arm", "Scenario"),
     "judging": ("Verdict", "assert_consistent", "judge"),

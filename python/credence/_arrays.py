@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from credence import InputError
 from credence._calls import note
-from credence._names import printable
+from credence._errors import printable, wrong
 from credence._record import Record
 
 Array = npt.NDArray[Any]
@@ -166,7 +166,7 @@ def _parted(arrays: Mapping[str, Any], runs: Any) -> tuple[dict[str, Array], Arr
             raise invalid(name, why, "Give tables with the same rows")
     parted = {name: numbers(name, table) for name, table in tables.items()}
     if not isinstance(labels, list) or any(map(_is_gap, labels)):
-        raise InputError("invalid runs (it is no array [row] without gaps). Give the number or name of each row's run.")
+        raise wrong("runs", "it is no array [row] without gaps", "Give the number or name of each row's run")
     first: dict[object, int] = {}
     run = np.array([first.setdefault(label, len(first)) for label in labels], dtype=np.intp)
     lengths = np.bincount(run)
@@ -255,7 +255,7 @@ def prepared(record: Record, runs: object = None) -> dict[str, Array]:
     if runs is None:
         arrays = of_many_runs(given)
     elif "steps" in given:
-        raise InputError("invalid steps (runs says how long each run is). Give runs or steps.")
+        raise wrong("steps", "runs says how long each run is", "Give runs or steps")
     else:
         arrays, lengths = _parted(given, runs)
         arrays["steps"] = lengths

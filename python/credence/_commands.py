@@ -11,6 +11,13 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import argparse
+
+    Command = Callable[[argparse.Namespace], int]
+    Main = Callable[[Sequence[str]], int]
 
 COMMANDS = ("simulate", "judge", "tune")
 STOPPED = {"simulate": 3, "judge": 130, "tune": 130}  # exit codes: what simulate has done is kept
@@ -49,7 +56,7 @@ def _say(name: str, message: object) -> None:
         print(f"credence {name}: {message}", file=sys.stderr, flush=True)
 
 
-def _code_of(name: str, main: Callable[[Sequence[str]], int], words: Sequence[str]) -> int:
+def _code_of(name: str, main: Main, words: Sequence[str]) -> int:
     """Run a command; the exit code, its own or that of its error."""
     from credence import Failure, InputError
     from credence._calls import say
@@ -69,6 +76,22 @@ def _code_of(name: str, main: Callable[[Sequence[str]], int], words: Sequence[st
         return 2 if isinstance(said, InputError) else 1
 
 
+def command(parser: Callable[[], argparse.ArgumentParser], positional: str) -> Callable[[Command], Main]:
+    """Make a function of a command line a command, whose messages call arguments by its options."""
+
+    def made(work: Command) -> Main:
+        def main(words: Sequence[str]) -> int:
+            from credence._errors import options_of
+
+            given = parser().parse_args(words)
+            with options_of(vars(given).keys() - {positional}):
+                return work(given)
+
+        return main
+
+    return made
+
+
 def obeyed(name: str, words: Sequence[str]) -> int | None:
     """Run a command and return its exit code; None where the words are for the program."""
     before = {number: signal.getsignal(number) for number in _stops}
@@ -78,8 +101,8 @@ def obeyed(name: str, words: Sequence[str]) -> int | None:
 
             from credence import _calls
 
-            command = importlib.import_module(f"credence._{name}_command")
-            is_ours = name != "judge" or command.is_for_adapters(words)
+            module = importlib.import_module(f"credence._{name}_command")
+            is_ours = name != "judge" or module.is_for_adapters(words)
         if not is_ours:
             for number, handler in before.items():
                 signal.signal(number, handler)
@@ -90,7 +113,7 @@ def obeyed(name: str, words: Sequence[str]) -> int | None:
         )
         sys.unraisablehook = _stop_again
         _calls.speak_as(f"credence {name}")
-        return _code_of(name, command.main, words)
+        return _code_of(name, module.main, words)
     except KeyboardInterrupt:
         _say(name, "it was stopped.")
         return STOPPED[name]

@@ -14,8 +14,9 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any, TypeVar
 
-from credence._errors import Failure, InputError
-from credence._names import not_utf8, printable
+from credence._errors import Failure, InputError, invalid, printable
+from credence._names import not_utf8
+from credence._outputs import check_output
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Check = Callable[[str, Any], Any]  # of the name and the value of an argument: returns what is taken, or raises
@@ -34,11 +35,6 @@ _remedies = {
     errno.ENOMEM: "Run it where there is more memory",
 }
 _of_input = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.EACCES, errno.EPERM, errno.ENAMETOOLONG, errno.ELOOP)
-
-
-def invalid(name: str, value: object, why: str, remedy: str) -> InputError:
-    """The error that refuses an argument."""
-    return InputError(f"invalid {name}={printable(value)} ({why}). {remedy}.")
 
 
 # What arguments of many functions have to be.
@@ -98,19 +94,7 @@ def path(name: str, value: Any) -> Any:
 
 def output(name: str, value: Any) -> Any:
     """A file that is to be written once the work is done: its folder is there before."""
-    whole_path = os.path.abspath(os.fsdecode(os.fspath(path(name, value))))
-    folder = os.path.dirname(whole_path)
-    why = ""
-    if os.path.isdir(whole_path):
-        why, remedy = "it is a folder", "Name a file in it"
-    elif not os.path.exists(folder):
-        why, remedy = f"there is no folder {printable(folder)}", "Make it first"
-    elif not os.path.isdir(folder):
-        why, remedy = f"{printable(folder)} is not a folder", "Give another place"
-    elif not os.access(whole_path if os.path.exists(whole_path) else folder, os.W_OK):
-        why, remedy = "it must not be written there", _others
-    if why:
-        raise InputError(f"cannot write {name}={printable(os.fspath(value))} ({why}). {remedy}.")
+    check_output(path(name, value), overwrite=True, name=name)
     return value
 
 
@@ -197,19 +181,13 @@ def goals(name: str, value: Any) -> Any:
 # Errors of the system.
 
 
-def _number_of(error: OSError) -> int | None:
-    """That of the error; HDF5 says it in its text."""
-    found = re.search(r"errno = (\d+)", str(error))
-    return error.errno or (int(found[1]) if found else None)
-
-
 def said_of_system(error: OSError) -> InputError | Failure | None:
     """What to say of a file, or of the system; None where the error has words of its own."""
-    number = _number_of(error)
+    number = error.errno
     if number is None:
         return None
     given = error.filename if error.filename2 is None else error.filename2
-    named = re.search(r"name = '([^']+)'", str(error))
+    named = re.search(r"name = '([^']+)'", str(error))  # HDF5 names the file in its text alone
     what = printable(os.fsdecode(given)) if isinstance(given, (str, bytes)) else named[1] if named else "a file"
     verb = "access" if number == errno.ENOENT else "write" if number in _remedies else "use"
     kind = InputError if number in _of_input else Failure

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import re
 import shlex
 import subprocess
 import sys
@@ -14,7 +13,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from credence import Failure, InputError
+from credence._commands import command
+from credence._errors import Failure, InputError, argument, invalid
 from credence._outputs import check_output, whole
 from credence._record import Record
 
@@ -120,7 +120,7 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
     allowed = used.get(kind or "", {"rows"} if kind == "ulg" else {"names"})
     for option in ("truth", "topic", "truth_topic", "times", "rows", "names", "units", *_poses):
         if getattr(given, option) not in (None, [], {}) and option not in allowed:
-            raise InputError(f"--{option.replace('_', '-')}: says nothing about a log of this kind. Leave it out.")
+            raise InputError(f"{argument(option)}: says nothing about a log of this kind. Leave it out.")
     if kind == "bag":
         topics = {"topic": given.topic, "truth_topic": given.truth_topic}
         return adapters.from_rosbag(given.log, given.truth, **topics, units=given.units, **poses)
@@ -198,36 +198,27 @@ def write_record(path: str, arguments: Mapping[str, Any], log: str = "") -> None
             file[name].attrs["dimension"] = dimension
 
 
-def _said(message: str) -> str:
-    """A message of the package with its arguments as options."""
-    message = re.sub(r"\((align|topic|times)\)", r"(--\1)", message)
-    message = re.sub(r"^units(?=: )|\bunits(?= \S+=)", "--units", message)
-    return re.sub(
-        r"\b(?:max|time|truth)_(?:gap|offset|topic)\b", lambda name: "--" + name[0].replace("_", "-"), message
-    )
-
-
-def main(words: Sequence[str]) -> int:
+@command(parser, "log")
+def main(given: argparse.Namespace) -> int:
     """Run the command and return its exit code."""
-    given = parser().parse_args(words)
     values = {name: getattr(given, name.replace("-", "_")) for name in _of_judge}
     options = [f"--{name}={value}" for name, value in values.items() if value is not None]
     options += [f"--{name}" for name in ("strict", "overwrite") if getattr(given, name)]
     options += [f"--output={os.path.abspath(given.output)}"] if given.output else []
     try:
         if given.record and Path(given.record).suffix != ".h5":
-            raise InputError(f"invalid record {given.record} (must end in .h5). Give another name.")
+            raise invalid("record", given.record, "must end in .h5", "Give another name")
         inputs = [*given.log, *(given.truth or ()), *([given.times] if given.times else [])]
         for output in (given.record, given.output):
             if output:
                 check_output(output, given.overwrite, inputs=inputs)
         if given.record and given.output and os.path.realpath(given.record) == os.path.realpath(given.output):
-            raise InputError(f"invalid record {given.record} (-o writes it, too). Give another name.")
+            raise invalid("record", given.record, "-o writes it, too", "Give another name")
         with warnings.catch_warnings(record=True) as notes:
             warnings.simplefilter("always", UserWarning)
             arguments = arguments_of(given)
         for one in notes:
-            print(f"credence judge: note: {_said(str(one.message))}", file=sys.stderr)
+            print(f"credence judge: note: {one.message}", file=sys.stderr)
         with tempfile.TemporaryDirectory(prefix="credence-") as folder:
             name = f"{Path(given.log[0]).name}.h5"
             record = os.path.abspath(given.record) if given.record else os.path.join(folder, name)
@@ -238,6 +229,6 @@ def main(words: Sequence[str]) -> int:
             where = None if given.record else folder  # the report names the record by its path
             code = subprocess.run(program, cwd=where, check=False).returncode
     except (InputError, Failure) as error:
-        print(f"credence judge: {_said(str(error))}", file=sys.stderr)
+        print(f"credence judge: {error}", file=sys.stderr)
         return 2 if isinstance(error, InputError) else 1
     return code if code >= 0 else 128 - code

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 from numbers import Integral, Real
 from typing import Any, NamedTuple
 
-from credence._errors import InputError
+from credence._errors import printable, wrong
 
 Entries = list[list[str]]
 _example = '{"pose": [0, 1, 2]}'
@@ -26,12 +26,6 @@ class Named(NamedTuple):
         return {name: text for given in (self.texts, lists) for name, text in sorted(given.items())}
 
 
-def printable(given: object) -> str:
-    """What was given, fit for a message of one line."""
-    text = given if isinstance(given, str) else repr(given)
-    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)[:100]
-
-
 def not_utf8(text: str) -> bool:
     """Whether a text has halves of characters, which UTF-8 cannot write."""
     return re.search("[\ud800-\udfff]", text) is not None
@@ -45,7 +39,7 @@ def _whole(given: object) -> int | None:
 
 def _name(argument: str, given: object) -> str:
     if not isinstance(given, str) or not_utf8(given):
-        raise InputError(f"invalid {argument} ({printable(given)} is not a text in UTF-8). Give one.")
+        raise wrong(argument, f"{printable(given)} is not a text in UTF-8", "Give one")
     return given
 
 
@@ -56,7 +50,7 @@ def _members(argument: str, name: str, given: Any) -> list[str]:
         if index is None:
             why = f"{printable(member)} of {printable(name)} is not the index of a component"
             remedy = f"Give indices, such as {_example}; those of a mask are numpy.flatnonzero(mask)"
-            raise InputError(f"invalid {argument} ({why}). {remedy}.")
+            raise wrong(argument, why, remedy)
     return [str(index) for index in indices]
 
 
@@ -65,15 +59,13 @@ def _groups(argument: str, given: Any) -> Entries:
     if isinstance(given, Mapping):
         return [[_name(argument, name), *_members(argument, name, members)] for name, members in given.items()]
     if not isinstance(given, Iterable):
-        raise InputError(f"invalid {argument} ({printable(given)} is no dict). Give one, such as {_example}.")
+        raise wrong(argument, f"{printable(given)} is no dict", f"Give one, such as {_example}")
     return [_name(argument, one).split() for one in given]
 
 
 def _names(argument: str, given: Any) -> Entries:
     if not isinstance(given, Iterable):
-        raise InputError(
-            f"invalid {argument} ({printable(given)} is no list). Give a list of texts, one for each component."
-        )
+        raise wrong(argument, f"{printable(given)} is no list", "Give a list of texts, one for each component")
     return [[_name(argument, one)] for one in given]
 
 
@@ -98,7 +90,7 @@ def dimensions(given: Any, groups: Any, nees: bool, group_nees: Iterable[str]) -
         if name not in known or _whole(dimension) is None:
             unknown = name not in known
             why = f"{printable(name)} has no NEES" if unknown else f"{printable(dimension)} is not a whole number"
-            raise InputError(f"invalid dimension ({why}). Give the number of components of each NEES, by its name.")
+            raise wrong("dimension", why, "Give the number of components of each NEES, by its name")
     if isinstance(groups, Mapping):
         by_name = {name: len(_members("groups", name, groups[name])) for name in group_nees if name in groups} | by_name
     place = {name: "nees" if name == "all" else f"group/{name}/nees" for name in by_name}

@@ -9,13 +9,9 @@ import weakref
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
-from credence._errors import InputError
+from credence._errors import InputError, argument, printable
 
 File = str | os.PathLike[str]
-
-
-def _refused(path: File, why: str, remedy: str) -> InputError:
-    return InputError(f"cannot write {os.fspath(path)} ({why}). {remedy}.")
 
 
 def _files_of(inputs: Iterable[File]) -> Iterator[File]:
@@ -27,8 +23,9 @@ def _files_of(inputs: Iterable[File]) -> Iterator[File]:
 
 
 def check_output(
-    path: File, overwrite: bool = False, remedy: str = "Give another name or --overwrite", inputs: Iterable[File] = ()
-) -> Path:
+    path: File, overwrite: bool = False, remedy: str = "Give another name or --overwrite", inputs: Iterable[File] = (),
+    name: str = "",
+) -> Path:  # fmt: skip
     """Return where a file would be written, which is where its links lead; InputError where it may not be.
 
     Parameters
@@ -40,21 +37,30 @@ def check_output(
         What to do about a file that is there.
     inputs : paths
         What is read.
+    name : str
+        The argument that the path is of.
     """
     target = Path(os.path.realpath(path))
-    if not target.parent.is_dir():
-        raise _refused(path, f"there is no folder {target.parent}", "Make it first")
-    if not os.access(target.parent, os.W_OK | os.X_OK):
-        raise _refused(path, f"you may not write to {target.parent}", "Give a folder that you may write to")
-    if not os.path.lexists(target):
-        return target
-    if not target.is_file():
-        raise _refused(path, "there is something that is not a file", "Give another name")
-    for one in _files_of(inputs):
-        if os.path.exists(one) and os.path.samefile(one, target):
-            raise _refused(path, f"it would replace {os.fspath(one)}, which is read", "Give another name")
-    if not overwrite:
-        raise _refused(path, "it is there already", remedy)
+    folder, why = target.parent, ""
+    if target.is_dir():
+        why, remedy = "it is a folder", "Name a file in it"
+    elif not folder.exists():
+        why, remedy = f"there is no folder {folder}", "Make it first"
+    elif not folder.is_dir():
+        why, remedy = f"{folder} is not a folder", "Give another place"
+    elif not os.access(folder, os.W_OK | os.X_OK):
+        why, remedy = f"you may not write to {folder}", "Give a folder that you may write to"
+    elif os.path.lexists(target) and not target.is_file():
+        why, remedy = "there is something that is not a file", "Give another name"
+    elif target.exists():
+        read = [one for one in _files_of(inputs) if os.path.exists(one) and os.path.samefile(one, target)]
+        if read:
+            why, remedy = f"it would replace {os.fspath(read[0])}, which is read", "Give another name"
+        elif not overwrite:
+            why = "it is there already"
+    if why:
+        called = f"{argument(name)}={os.fspath(path)}" if name else os.fspath(path)
+        raise InputError(f"cannot write {printable(called)} ({why}). {remedy}.")
     return target
 
 

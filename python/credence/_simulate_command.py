@@ -12,9 +12,10 @@ import traceback
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from credence import InputError
 from credence._calls import say
+from credence._commands import command
 from credence._doors import needed
+from credence._errors import InputError, invalid
 from credence.judging import NOT_REFUTED, Verdict
 from credence.program import STOPPED, Interrupted
 from credence.simulating import simulate
@@ -24,7 +25,7 @@ def function_of(name: str) -> Any:
     """The function MODULE:NAME; modules of the folder in which it is called are found."""
     module, _, attribute = name.partition(":")
     if not module or not attribute:
-        raise InputError(f"invalid function {name} (must be MODULE:FUNCTION). Give one, such as my_filter:run.")
+        raise invalid("function", name, "must be MODULE:FUNCTION", "Give one, such as my_filter:run")
     sys.path.insert(0, os.getcwd())
     try:
         found = importlib.import_module(module)
@@ -70,7 +71,7 @@ def executor_of(name: str | None) -> Iterator[Any]:
         with client_of(address or None) if address or not file else client_of(scheduler_file=file) as client:
             yield client.get_executor()
     else:
-        raise InputError(f"invalid executor {name} (must be a number, dask, dask:ADDRESS or mpi). Give one of them.")
+        raise invalid("executor", name, "must be a number, dask, dask:ADDRESS or mpi", "Give one of them")
 
 
 def with_options_of_trials(made: argparse.ArgumentParser) -> argparse.ArgumentParser:
@@ -107,9 +108,9 @@ def parser() -> argparse.ArgumentParser:
     return with_options_of_trials(made)
 
 
-def main(words: Sequence[str]) -> int:
+@command(parser, "function")
+def main(given: argparse.Namespace) -> int:
     """Run the command and return its exit code. A batch system's SIGTERM stops it as Ctrl-C does."""
-    given = parser().parse_args(words)
     try:
         function, arms = function_of(given.function), _arms(given.arm)
         with executor_of(given.executor) as executor:

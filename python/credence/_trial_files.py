@@ -22,7 +22,8 @@ import numpy as np
 
 from credence import InputError
 from credence._calls import note
-from credence._names import Named, printable
+from credence._errors import printable, wrong
+from credence._names import Named
 from credence._outputs import whole
 from credence._trials import LARGE, MAGIC, START, Arms, Array, Failure, Frame, frame_at, frame_size, framed, metric
 
@@ -68,7 +69,7 @@ def _description(seed: int, arms: Arms, batch: int) -> dict[str, Any]:
     try:
         told = {arm: {name: _told(value) for name, value in options.items()} for arm, options in arms.items()}
     except RecursionError:
-        raise InputError("invalid arms (an option contains itself). Give plain values, or arrays.") from None
+        raise wrong("arms", "an option contains itself", "Give plain values, or arrays") from None
     return {"format": FORMAT, "seed": seed, "arms": told, "batch": batch}
 
 

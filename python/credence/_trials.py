@@ -25,8 +25,8 @@ import numpy as np
 import numpy.typing as npt
 
 from credence import InputError, _arrays, _core
-from credence._calls import said_of_arrays
-from credence._names import Named, printable
+from credence._errors import printable
+from credence._names import Named
 from credence._record import Run
 
 Array = npt.NDArray[Any]
@@ -252,8 +252,7 @@ def _refusals(arrays: Mapping[str, Array], texts: Mapping[str, Any]) -> dict[int
             described = {name: _arrays.described(array[part]) for name, array in arrays.items()}
             _core.check(described, texts["texts"], texts["lists"], texts["dimensions"])
         except InputError as error:
-            said = said_of_arrays(str(error)).replace("trial 0, step", "step")
-            return said.replace("(both counted from 0)", "(counted from 0)")
+            return str(error).replace("trial 0, step", "step").replace("(both counted from 0)", "(counted from 0)")
         return ""
 
     if not refusal(slice(None)):

@@ -5,10 +5,10 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from credence import InputError
 from credence._calls import say
+from credence._commands import command
 from credence._doors import needed
-from credence._names import printable
+from credence._errors import invalid
 from credence._outputs import check_output
 from credence._simulate_command import code_of, executor_of, function_of, with_options_of_trials
 from credence.tuning import tune
@@ -22,7 +22,7 @@ def _free(words: Sequence[str]) -> dict[str, tuple[float, float] | None]:
         try:
             low, high = map(float, bounds.split(":")) if equals else (0.0, 0.0)
         except ValueError:
-            raise InputError(f"invalid --free {printable(word)} (must be NAME=LOW:HIGH). Give two numbers.") from None
+            raise invalid("free", word, "must be NAME=LOW:HIGH", "Give two numbers") from None
         free[name] = (low, high) if equals else None
     return free
 
@@ -34,7 +34,7 @@ def _start(words: Sequence[str]) -> dict[str, float]:
         try:
             start[name] = float(value)
         except ValueError:
-            raise InputError(f"invalid --start {printable(word)} (must be NAME=NUMBER). Give a number.") from None
+            raise invalid("start", word, "must be NAME=NUMBER", "Give a number") from None
     return start
 
 
@@ -60,12 +60,12 @@ def parser() -> argparse.ArgumentParser:
     return with_options_of_trials(made)
 
 
-def main(words: Sequence[str]) -> int:
+@command(parser, "what")
+def main(given: argparse.Namespace) -> int:
     """Run the command and return its exit code. A batch system's SIGTERM stops it as Ctrl-C does."""
-    given = parser().parse_args(words)
     if given.picture is not None:
         if not given.picture.lower().endswith((".png", ".pdf", ".svg")):
-            raise InputError(f"invalid --picture {printable(given.picture)} (must be a .png, .pdf or .svg). Name one.")
+            raise invalid("picture", given.picture, "must be a .png, .pdf or .svg", "Name one")
         check_output(given.picture, given.overwrite, inputs=[given.what])
         needed("matplotlib", "matplotlib", "draw a picture")
     is_function = ":" in given.what and not given.what.endswith(".ini")

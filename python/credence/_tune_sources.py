@@ -18,7 +18,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from credence import Failure, InputError
-from credence._names import printable
+from credence._errors import invalid
 from credence._record import Run
 from credence._scores import judged_score, run_score, step_scores
 from credence._trials import Array, KnownNames, Work, collected, take
@@ -137,8 +137,8 @@ class ScenarioSource:
         self, scenario: Any, objective: str, seed: int, executor: Any, arm: str | None, program: str | None
     ) -> None:
         if objective not in COLUMNS:
-            why = f"invalid objective={objective} (a study has no likelihood of its innovations)"
-            raise InputError(f"{why}. Take errors, or nees.")
+            why = "a study has no likelihood of its innovations"
+            raise invalid("objective", objective, why, "Take errors, or nees")
         if program is not None and executor is not None:
             raise InputError("cannot run a program of your own on an executor (it has threads). Leave executor out.")
         self.scenario, self.objective, self.seed, self.trouble = scenario, objective, seed, ""
@@ -186,7 +186,7 @@ class ScenarioSource:
         arms = {arm.name: arm for arm in study.arms}
         if len(study.scenarios) != 1 or (self.arm is not None and self.arm not in arms):
             why = f"there are {', '.join(arms)}"
-            raise InputError(f"invalid arm={printable(self.arm)} ({why}). Name one of a scenario.")
+            raise invalid("arm", self.arm, why, "Name one of a scenario")
         self.arm = self.arm or next(iter(arms))
         return arms[self.arm]
 
@@ -230,7 +230,7 @@ class LogSource:
         steps = len(step_scores(objective, arrays))
         self.first = steps // 2 if held_out is None else steps - held_out
         if self.first < 2:
-            raise InputError(f"invalid held_out={held_out} (the log has {steps} steps). Leave some to tune on.")
+            raise invalid("held_out", held_out, f"the log has {steps} steps", "Leave some to tune on")
         self.rest = slice(self.first % steps, None)  # where nothing is held out, all of it
         said = self._judged(arrays, texts, slice(None))
         each = (said.json[0].get("segments") or {}).get("steps") or self.first // FEW_SEGMENTS

@@ -12,7 +12,8 @@ from typing import Any, ParamSpec
 
 from credence import InputError, _core
 from credence import _doors as doors
-from credence._calls import errors_of_arguments, progress_bar, said_of_arrays
+from credence._calls import progress_bar
+from credence._errors import invalid, wrong
 from credence._record import Record
 from credence._results import Printed
 
@@ -119,7 +120,7 @@ def _judged(name: str, value: Any) -> Any:
     }
     kind = type(value).__name__
     if kind in remedies and type(value).__module__.startswith("credence."):
-        raise InputError(f"invalid {name} (a {kind} is no array of errors). Take {remedies[kind]}.")
+        raise wrong(name, f"a {kind} is no array of errors", f"Take {remedies[kind]}")
     return doors.path(name, value) if isinstance(value, (str, os.PathLike)) else value
 
 
@@ -205,7 +206,7 @@ def judge(asked: _Asked) -> Verdict:
     if isinstance(asked.error, (str, os.PathLike, Record)) and data != {"error"}:
         raise TypeError("a Record, or one in a file, has its own arrays, groups and names. Give it alone.")
     if isinstance(asked.error, (str, os.PathLike)):
-        with errors_of_arguments(), progress_bar(asked.progress) as bar:
+        with progress_bar(asked.progress) as bar:
             return Verdict(_core.judge_file(os.fsencode(asked.error), options, bar))
     from credence import _arrays
 
@@ -216,7 +217,7 @@ def judge(asked: _Asked) -> Verdict:
                 raise InputError(f"{name}: says nothing without {other}. Give both, or leave it out.")
     named = record.named()
     taken = {place: _arrays.described(array) for place, array in _arrays.prepared(record, asked.runs).items()}
-    with errors_of_arguments(said_of_arrays), progress_bar(asked.progress) as bar:
+    with progress_bar(asked.progress) as bar:
         return Verdict(_core.judge(taken, *named, options, os.fsencode(asked.name), bar))
 
 
@@ -240,8 +241,12 @@ def assert_consistent(
     __tracebackhide__ = True  # pytest then shows the line that asserts
     if within is not None:
         named["margin"] = within
-    with errors_of_arguments(lambda said: said if within is None else said.replace("margin=", "within=", 1)):
+    try:
         verdict = judge(*arguments, **named)
+    except InputError as error:
+        if within is None or error.subject != "margin":
+            raise
+        raise invalid("within", error.value, error.reason, error.remedy) from None
     if verdict.verdict not in NOT_REFUTED:
         raise AssertionError(f"the filter is not consistent\n\n{verdict}")
     if within is not None and not verdict.is_consistent:

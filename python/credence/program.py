@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING, Any
 
 from credence import _core
 from credence import _doors as doors
-from credence._calls import errors_of_arguments, note, progress_bar, said
-from credence._names import not_utf8, printable
+from credence._calls import note, progress_bar
+from credence._errors import invalid, wrong
+from credence._names import not_utf8
 from credence._outputs import goes_with
 from credence._results import Printed, Results, Sources
 
@@ -55,16 +56,15 @@ def _command(
 ) -> tuple[int, str, str]:
     """Run a command of the program; return its exit code and what it said on both streams."""
     _refuse_what_is_not_utf8(arguments, options)
-    with errors_of_arguments(), progress_bar(progress) as bar:
+    with progress_bar(progress) as bar:
         return _core.command(name, arguments, options, bar)
 
 
 def _refuse_what_is_not_utf8(arguments: Sequence[str], options: Mapping[str, object]) -> None:
-    for name, given in [*(("", one) for one in arguments), *options.items()]:
+    for name, given in [*(("path", one) for one in arguments), *options.items()]:
         for value in given if isinstance(given, list) else [given]:
             if isinstance(value, str) and not_utf8(value):
-                word = printable(f"--{name}={value}" if name else value)
-                raise _core.InputError(f"invalid {said(word)} (it is not UTF-8). Give another name.")
+                raise invalid(name, value, "it is not UTF-8", "Give another name")
 
 
 def _value_text(value: object) -> str:
@@ -81,7 +81,7 @@ def _axis_text(values: str | Iterable[object]) -> str:
     texts = [_value_text(one) for one in values]
     for text in texts:
         if "|" in text:
-            raise _core.InputError(f"invalid sweep ({text!r} has a bar, which parts values). Give values without bars.")
+            raise wrong("sweep", f"{text!r} has a bar, which parts values", "Give values without bars")
     return "|".join([*texts, ""]) if any("," in text for text in texts) else ",".join(texts)
 
 
@@ -144,9 +144,9 @@ def _finish(
     if folder is not None:
         goes_with(study, folder)
     if code == STOPPED:
-        raise Interrupted(said(err.split(" To resume it:")[0].strip()), study)
+        raise Interrupted(" ".join(err.split()), study)
     if err:
-        note(said(err.strip()))
+        note(err.strip())
     return study
 
 
@@ -368,8 +368,7 @@ def replay(
 
 def _said(command: str, paths: Sequence[str], options: Mapping[str, object]) -> _core.Said:
     _refuse_what_is_not_utf8(paths, options)
-    with errors_of_arguments():
-        return _core.Said(command, paths, options)
+    return _core.Said(command, paths, options)
 
 
 class Report(Printed):
@@ -428,16 +427,16 @@ def _compared_records(given: Sequence[dict[str, str]], arms: str | tuple[str, st
     wanted = None if named is None else [name.strip() for name in named]
     if wanted is not None:
         if len(wanted) != 2:
-            raise _core.InputError(f"invalid arms={printable(arms)} (a comparison takes two). Give A and B.")
+            raise invalid("arms", arms, "a comparison takes two", "Give A and B")
         if len(given) > 2:
-            raise _core.InputError(f"invalid arms={printable(arms)} (there are {len(given)} simulations). Give two.")
+            raise invalid("arms", arms, f"there are {len(given)} simulations", "Give two")
         for records, name in zip((given[0], given[-1]), wanted):
             if name not in records:
                 raise KeyError(f"there is no arm {name}. There is {', '.join(records)}")
         return [given[-1][wanted[1]], given[0][wanted[0]]]
     if len(given) == 1:
         if len(given[0]) < 2:
-            raise _core.InputError("invalid arms=None (there is one arm, and a comparison takes two). Give another.")
+            raise invalid("arms", None, "there is one arm, and a comparison takes two", "Give another")
         return list(given[0].values())
     if all(len(records) == 1 for records in given):
         return [path for records in given for path in records.values()]

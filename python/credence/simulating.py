@@ -28,8 +28,8 @@ import numpy as np
 
 from credence import _core
 from credence import _doors as doors
-from credence._calls import errors_of_arguments, framed, note, progress_bar, said_of_arrays
-from credence._names import printable
+from credence._calls import framed, note, progress_bar
+from credence._errors import invalid, printable, wrong
 from credence._outputs import check_output, goes_with
 from credence._record import Run
 from credence._results import Results, Sources
@@ -82,7 +82,7 @@ class Goal(NamedTuple):
 
 
 def _goal(name: str, width: object, arms: Arms) -> Goal:
-    given = f"invalid until={printable(f'{name}={width}' if name else str(width))}"
+    refused = functools.partial(invalid, "until", f"{name}={width}" if name else str(width))
     parts = re.fullmatch(r"([^\[\]=]+)(?:\[(.+)\])?", name.strip())
     number = str(width).strip()
     try:
@@ -90,14 +90,12 @@ def _goal(name: str, width: object, arms: Arms) -> Goal:
     except ValueError:
         size = math.nan
     if parts is None or not (size > 0 and math.isfinite(size)):
-        raise _core.InputError(f'{given} (no half-width above 0). Give one, such as {{"nees_ratio": "1%"}}.')
+        raise refused("no half-width above 0", 'Give one, such as {"nees_ratio": "1%"}')
     pair = None
     if parts[2] is not None:
         pairs = [(a, b) for a in arms for b in arms if a != b and f"{a}-{b}" == parts[2]]
         if not pairs:
-            raise _core.InputError(
-                f"{given} (there are no two such arms). Write NUMBER[A-B] with two of {', '.join(arms)}."
-            )
+            raise refused("there are no two such arms", f"Write NUMBER[A-B] with two of {', '.join(arms)}")
         pair = pairs[0]
     is_relative = number.endswith("%")
     return Goal(parts[1].strip(), pair, size / 100 if is_relative else size, is_relative)
@@ -119,14 +117,12 @@ def _arms(given: Mapping[str, Mapping[str, Any]] | None) -> Arms:
     for name, options in doors.mapping("{'kf': {'q': 0.2}}")("arms", given).items():
         if not isinstance(name, str) or not re.fullmatch(r"\w[\w.+-]*", name):
             why = f"{printable(name)} is no name of letters, digits and . + -"
-            raise _core.InputError(f"invalid arms ({why}). Give one that can be a part of a file's name.")
+            raise wrong("arms", why, "Give one that can be a part of a file's name")
         if not isinstance(options, Mapping):
-            raise _core.InputError(
-                f"invalid arms ({name} has no dict of options). Give one, such as {{'kf': {{'q': 0.2}}}}."
-            )
+            raise wrong("arms", f"{name} has no dict of options", "Give one, such as {'kf': {'q': 0.2}}")
         arms[name] = dict(options)
     if not arms:
-        raise _core.InputError("invalid arms (there is none). Name one, or leave arms out.")
+        raise wrong("arms", "there is none", "Name one, or leave arms out")
     return arms
 
 
@@ -607,10 +603,7 @@ def _tune_hint(run: Callable[..., Any], arms: Arms, refuted: str) -> str:
 def _refuse_bad_limit(failed: float | str) -> None:
     """Refuse a share that `judge` would refuse in the end."""
     one = (np.ones((1, 1)), float(np.finfo(float).eps))
-    with errors_of_arguments(said_of_arrays):
-        _core.judge(
-            {"error": one, "covariance": one}, {}, {}, {}, {"segments": "off", "failed": failed}, b"", None
-        )
+    _core.judge({"error": one, "covariance": one}, {}, {}, {}, {"segments": "off", "failed": failed}, b"", None)
 
 
 def batch_size(name: str, value: Any) -> int:
@@ -692,9 +685,7 @@ def simulate(
         A KeyboardInterrupt: Ctrl-C was pressed. What was done is kept beside `output`.
     """
     if not callable(run):
-        raise _core.InputError(
-            f"invalid run (a {type(run).__name__} cannot be called). Give a function of a generator."
-        )
+        raise wrong("run", f"a {type(run).__name__} cannot be called", "Give a function of a generator")
     plan = _arms(arms)
     goals = _goals(until, plan)
     _refuse_bad_limit(failed)

@@ -186,15 +186,13 @@ def _row(arm: Arm) -> tuple[str, ...]:
 def of_records(paths: Sequence[str]) -> Study:
     """The study whose arms are records of the same trials: their columns, and their series by step."""
     from credence import _core
-    from credence._calls import errors_of_arguments
 
     whole = [os.path.abspath(os.fspath(path)) for path in paths]
     with h5py.File(parted(whole[0])[0], "r") as first:
         seed = int(first.attrs["seed"]) if "seed" in first.attrs else None
     with tempfile.TemporaryDirectory(prefix="credence-") as folder:
         path = os.path.join(folder, "records.h5")
-        with errors_of_arguments():
-            _core.write_results_of([os.fsencode(one) for one in whole], seed or 0, os.fsencode(path))
+        _core.write_results_of([os.fsencode(one) for one in whole], seed or 0, os.fsencode(path))
         with h5py.File(path, "r+") as file:
             file.attrs["records"] = json.dumps(whole)
             if seed is None:

@@ -23,7 +23,7 @@ import numpy as np
 from credence import Failure, InputError
 from credence import _doors as doors
 from credence._calls import note
-from credence._names import printable
+from credence._errors import invalid, printable, wrong
 from credence._scores import OBJECTIVES
 from credence._trials import Array, Work
 from credence._tune_search import FAILED, Known, Objective, Space, known, search
@@ -349,28 +349,28 @@ def _box(free: Any, start: Mapping[str, float], defaults: Mapping[str, Any], is_
     given = dict(free) if isinstance(free, Mapping) else dict.fromkeys(free)
     for name in start:
         if name not in given:
-            raise InputError(f"invalid start ({printable(name)} is not free). Free are {', '.join(map(str, given))}.")
+            raise wrong("start", f"{printable(name)} is not free", f"Free are {', '.join(map(str, given))}")
     lows, highs, begins = [], [], {}
     for name, bounds in given.items():
         known_value = start.get(name, defaults.get(name))
         if bounds is None:
             value = _number(name, known_value)
             if not is_scenario or value <= 0:
-                raise InputError(f"invalid free ({printable(name)} has no bounds). Give a low and a high.")
+                raise wrong("free", f"{printable(name)} has no bounds", "Give a low and a high")
             bounds = (value / FIRST_BOUNDS, value * FIRST_BOUNDS)
         try:
             low, high = (_number(f"free[{name}]", end) for end in bounds)
         except (TypeError, ValueError) as error:
             if isinstance(error, InputError):
                 raise
-            raise InputError(f"invalid free ({printable(name)} has no pair of bounds). Give low and high.") from None
+            raise wrong("free", f"{printable(name)} has no pair of bounds", "Give low and high") from None
         if not low < high:
-            raise InputError(f"invalid free ({printable(name)} is from {low:g} to {high:g}). Give a low and a high.")
+            raise wrong("free", f"{printable(name)} is from {low:g} to {high:g}", "Give a low and a high")
         middle = math.sqrt(low * high) if low > 0 else (low + high) / 2
         value = middle if known_value is None else _number(name, known_value)
         if not low <= value <= high:
             why = f"{printable(name)} starts at {value:g}, outside {low:g} to {high:g}"
-            raise InputError(f"invalid start ({why}). Give other bounds, or a start within them.")
+            raise wrong("start", why, "Give other bounds, or a start within them")
         lows.append(low)
         highs.append(high)
         begins[name] = value
@@ -386,8 +386,8 @@ def _options_of(run: Callable[..., Any], free: Any) -> tuple[dict[str, Any], boo
     takes_any = any(one.kind is one.VAR_KEYWORD for one in parameters.values())
     for name in free if isinstance(free, Iterable) and not isinstance(free, str) else ():
         if name not in parameters and not takes_any:
-            raise InputError(f"invalid free ({printable(name)} is no option of the function). "
-                             f"It has {', '.join(parameters) or 'none'}.")  # fmt: skip
+            there = ", ".join(parameters) or "none"
+            raise wrong("free", f"{printable(name)} is no option of the function", f"It has {there}")
     defaults = {
         name: one.default
         for name, one in parameters.items()
@@ -403,10 +403,10 @@ def _options_of(run: Callable[..., Any], free: Any) -> tuple[dict[str, Any], boo
 def _named(name: str, value: Any) -> Any:
     """Parameters as a dict of their bounds, or as a list of their names."""
     if isinstance(value, (str, bytes)) or not isinstance(value, Iterable):
-        raise doors.invalid(name, value, "must be a dict of bounds", "Give one: {'q': (0.01, 10)}")
+        raise invalid(name, value, "must be a dict of bounds", "Give one: {'q': (0.01, 10)}")
     given = value if isinstance(value, Mapping) else list(value)
     if not given:
-        raise InputError("invalid free (it has no parameter). Name one with its bounds: {'q': (0.01, 10)}.")
+        raise wrong("free", "it has no parameter", "Name one with its bounds: {'q': (0.01, 10)}")
     return doors.mapping("{'q': (0.01, 10)}")(name, given) if isinstance(given, Mapping) else doors.texts(name, given)
 
 
@@ -480,10 +480,10 @@ def tune(
         The filter has no result at any point that was tried.
     """
     if objective not in OBJECTIVES:
-        raise InputError(f"invalid objective={printable(objective)} (must be {', '.join(OBJECTIVES)}). Take one.")
+        raise invalid("objective", objective, f"must be {', '.join(OBJECTIVES)}", "Take one")
     is_scenario = isinstance(what, (str, os.PathLike))
     if not is_scenario and not callable(what):
-        raise InputError(f"invalid what (a {type(what).__name__} cannot be called). Give a function, or a scenario.")
+        raise wrong("what", f"a {type(what).__name__} cannot be called", "Give a function, or a scenario")
     count, root = trials, seed
     others = max(count, HELD_OUT) if held_out is None else held_out
     if not is_scenario and (arm is not None or program is not None):
@@ -509,7 +509,7 @@ def tune(
     if objective == "nees":
         note(CUSTOM)
     if others == 0 and not isinstance(source, LogSource):
-        raise InputError("invalid held_out=0 (only a log can be judged on what it was tuned on). Give some trials.")
+        raise invalid("held_out", 0, "only a log can be judged on what it was tuned on", "Give some trials")
     if isinstance(source, LogSource):
         count = source.segments
         whole = source.rest.start == 0
@@ -528,12 +528,12 @@ def _scenario_box(source: ScenarioSource, free: Any, begins: dict[str, float]) -
     values = source.shown({})
     for key in free if isinstance(free, Iterable) and not isinstance(free, str) else ():
         if key not in values:
-            raise InputError(f"invalid free ({printable(key)} is no key of the scenario). credence show lists them.")
+            raise wrong("free", f"{printable(key)} is no key of the scenario", "credence show lists them")
         try:
             float(values[key])
         except ValueError:
             why = f"{key} is {printable(values[key])}, not a number"
-            raise InputError(f"invalid free ({why}). Take a key that is one.") from None
+            raise wrong("free", why, "Take a key that is one") from None
     space, first = _box(free, begins, {key: value for key, value in values.items() if key in free}, True)
     for side in (space.low, space.high, np.array(list(first.values()))):
         source.shown(dict(zip(space.names, map(float, side))))

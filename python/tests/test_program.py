@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import gc
 import json
 import os
@@ -17,7 +18,6 @@ import pytest
 from conftest import SCENARIO, python, refusal, refused, started
 
 import credence
-from credence._calls import said
 
 
 def contents(path):
@@ -112,46 +112,47 @@ def test_what_cannot_be_used_is_refused(call, message):
     assert message in refusal(call)
 
 
-@pytest.mark.parametrize(
-    ("message", "in_python"),
-    [
-        ("Give another name, --resume or --overwrite.", "Give another name, credence.resume() or overwrite=True."),
-        ("`credence run 'my own.ini'` runs it.", "credence.run('my own.ini') runs it."),
-        ("`credence show` prints every key.", "credence.show() prints every key."),
-        ("`credence run --help` lists them.", "help(credence.run) lists them."),
-        ("`credence watch x.h5` follows it, and `credence run --resume` resumes it.",
-         "`credence watch x.h5` follows it, and credence.resume() resumes it."),
-        ("`credence replay SCENARIO.ini --noise r.h5` reads it.",
-         "credence.replay('SCENARIO.ini', noise='r.h5') reads it."),
-        ("--set noise.heading: invalid noise.heading=0,1 (a comma). Write --sweep noise.heading=0,1.",
-         'set noise.heading: invalid noise.heading=0,1 (a comma). Write sweep={"noise.heading": "0,1"}.'),
-        ("Write --set section.key=value.", 'Write set={"section.key": "value"}.'),
-        ("more than --trials 10.", "more than trials=10."),
-        ("invalid --margin-direction=0.01 (less than the margin). Give at least --margin=0.05.",
-         "invalid margin_direction=0.01 (less than the margin). Give at least margin=0.05."),
-        ("run both with --keep trials, or give --arms A,B or another.",
-         "run both with keep='trials', or give arms='A,B' or another."),
-        ("invalid -o=x.html (it is HDF5).", "invalid output=x.html (it is HDF5)."),
-        ("see --dry-run, or start it all the same with --force.",
-         "see `credence run --dry-run`, or start it all the same with force=True."),
-        ("cannot write a--set/--force (it exists)", "cannot write a--set/--force (it exists)"),
-    ],
-)  # fmt: skip
-def test_messages_of_the_program_are_in_words_of_python(message, in_python):
-    assert said(message) == in_python
-
-
-def test_refusals_name_what_python_does(scenario, tmp_path):
-    path = tmp_path / "study.h5"
-    study = credence.run(scenario, trials=256, output=path, set={"arms.controllers": "fixed"})
-    for given, message in (
-        ({"output": path}, r"Give another name, credence.resume\(\) or overwrite=True.$"),
-        ({"set": {"noise.heading": "0,1"}}, 'as sweep={"noise.heading": "0,1"}.'),
-        ({"set": {"zzz": 1}}, r"credence.show\(\) prints every key"),
-        ({"output": tmp_path / "x.html"}, "invalid output="),
-    ):
-        refused(message, credence.run, scenario, **given)
-    assert f"credence.run('{scenario}') runs it" in refusal(credence.report, scenario)
+def test_refusals_name_what_python_does(scenario, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    study = credence.run(scenario, trials=256, output="study.h5", set={"arms.controllers": "fixed"})
+    other = credence.run(scenario, trials=256, output="other.h5", set={"arms.controllers": "greedy"})
+    totals = [credence.run(scenario, trials=256, keep="aggregates") for _ in range(2)]
+    pathlib.Path("my own.ini").write_text("[scenario]\nposes = 3\n")
+    pathlib.Path("x.journal").write_text("credence-journal")
+    pathlib.Path("--set").mkdir()
+    pathlib.Path("--set/--force").write_text("")
+    with h5py.File("noise.h5", "w") as file:
+        file["odometry"] = file["measurement"] = 0.0
+    run = functools.partial(credence.run, scenario)
+    for call, said in (
+        (lambda: run(output="study.h5"), "Give another name, credence.resume() or overwrite=True."),
+        (lambda: run(output="./--set/--force"), "cannot write ./--set/--force (it is there already). "),
+        (lambda: run(output="x.html"), "invalid output=x.html (what is written there is HDF5). Give FILE.h5; "
+                                       "credence.report() makes pages and tables of it."),
+        (lambda: run(set={"noise.heading": "0,1"}), "set noise.heading: invalid noise.heading=0,1 (it has a comma, and "
+                                                    "one number is wanted)."),
+        (lambda: run(set={"noise.heading": "0,1"}), 'several values as sweep={"noise.heading": "0,1"}.'),
+        (lambda: run(sweep={"noise.heading": [""]}), 'Write sweep={"section.key": "a,b,c"}.'),
+        (lambda: run(set={"zzz": 1}), "credence.show() prints every key."),
+        (lambda: run(trials=10**12), "see `credence run --dry-run`, or start it all the same with force=True."),
+        (lambda: credence.report("my own.ini"), "credence.run('my own.ini') runs it."),
+        (lambda: credence.report("noise.h5"), "credence.replay('SCENARIO.ini', noise='noise.h5') reads it."),
+        (lambda: credence.report("x.journal"), "`credence watch x.journal` follows it, and credence.resume() resumes "
+                                               "it."),
+        (lambda: credence.report(study, margin_direction=0.01), "invalid margin_direction=0.01 (less than the margin). "
+                                                                "Give at least margin=0.05."),
+        (lambda: credence.compare(*totals), "Run it with keep='trials', or compare arms of one file."),
+        (lambda: credence.compare(study, other), "Give arms='A,B' or other files: "),
+    ):  # fmt: skip
+        with pytest.raises(credence.InputError) as raised:
+            call()
+        assert said in str(raised.value)
+    error = raised.value
+    assert str(error) == f"{error.subject} ({error.reason}). {error.remedy}."
+    with pytest.raises(credence.InputError) as raised:
+        credence.report(study, bias=11)
+    error = raised.value
+    assert (error.subject, error.value, error.reason) == ("bias", "11", "must be above 0 and at most 10 sigmas")
     (trial,) = credence.replay(study, trial=3)  # of the only scenario and arm
     assert trial.trial == 3
     with pytest.warns(UserWarning, match="has 256 trials of each scenario already, more than trials=100"):

@@ -789,10 +789,10 @@ def test_the_command_says_what_the_function_says():
 def test_the_command_refuses_bad_input():
     run = "filters:drawn"
     for words, expected in [
-        (["mine.run"], "invalid function mine.run (must be MODULE:FUNCTION)"),
+        (["mine.run"], "invalid function=mine.run (must be MODULE:FUNCTION)"),
         (["nothing_here:run"], "nothing_here:run: cannot be imported (No module named 'nothing_here')"),
         (["filters:walk"], "filters:walk: the module has no walk"),
-        ([run, "--executor", "slurm"], "invalid executor slurm (must be a number, dask, dask:ADDRESS or mpi)"),
+        ([run, "--executor", "slurm"], "invalid --executor=slurm (must be a number, dask, dask:ADDRESS or mpi)"),
         ([run, "--arm", "calm", "0.5"], "invalid option 0.5 of the arm calm (must be NAME=VALUE)"),
         ([run, "--resume"], "cannot resume (there is no output)"),
     ]:

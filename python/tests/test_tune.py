@@ -350,7 +350,7 @@ def test_the_command_says_what_the_function_says(tmp_path):
     (tmp_path / "s.png").write_bytes(b"")
     assert command(*drawn, "--overwrite")[0] == 0
     assert (tmp_path / "s.png").read_bytes() == picture
-    wrong = "credence tune: invalid --free s=a:b (must be NAME=LOW:HIGH). Give two numbers.\n"
+    wrong = "credence tune: invalid --free=s=a:b (must be NAME=LOW:HIGH). Give two numbers.\n"
     assert command(*words, "--free", "s=a:b")[::2] == (2, wrong)
 
 

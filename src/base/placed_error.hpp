@@ -1,22 +1,16 @@
 #pragma once
 // Errors of what a file or arrays hold, which name the place and the remedy.
 
-#include <stdexcept>
-#include <string>
-#include <utility>
+#include <credence/error.hpp>
 
 namespace credence {
 
-/// An error of the content, as `place: problem`. Who opened the file translates it to an InputError or a Failure.
-class PlacedError : public std::runtime_error {
+/// An error of the content at a place in it; its remedy is empty where only the usual one helps. Who opened the file
+/// translates it to an InputError or a Failure.
+class PlacedError : public ComplaintError {
 public:
-    PlacedError(const std::string& place, const std::string& problem, std::string remedy = {})
-        : std::runtime_error(place + ": " + problem), remedy_(std::move(remedy)) {}
-    /// The remedy; empty where only the usual one helps.
-    const std::string& remedy() const { return remedy_; }
-
-private:
-    std::string remedy_;
+    PlacedError(const std::string& place, const std::string& problem, const std::string& remedy = {})
+        : ComplaintError(Complaint{problem, {}, remedy, {}, place}) {}
 };
 
 }  // namespace credence

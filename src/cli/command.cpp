@@ -2,9 +2,11 @@
 
 #include "base/choice.hpp"
 #include "base/program_name.hpp"
+#include "base/wording.hpp"
 #include "files/record.hpp"
 #include "files/system/durable_file.hpp"
 #include "worlds/notes.hpp"
+#include "worlds/values.hpp"
 
 #include <credence/error.hpp>
 #include <credence/detail/store.hpp>
@@ -18,7 +20,6 @@
 #include <iostream>
 #include <limits>
 #include <new>
-#include <set>
 #include <sstream>
 
 namespace credence::cli {
@@ -58,17 +59,16 @@ std::string help_text(const po::options_description& description) {
     for (const Option& option : command.options) names.push_back(option.long_name());
     const std::size_t first = given.find_first_not_of('-');
     const std::string meant = first == std::string::npos ? "" : closest(given.substr(first), names);
-    throw InputError(
-        "unknown option " + printable(given) + ". " +
-        (meant.empty() ? "`" + program_name() + " " + command.name + " --help` lists them."
-                       : "Did you mean --" + meant + "?"));
+    throw InputError("unknown option " + printable(given), {},
+                     meant.empty() ? as_command({command.name, "--help"}) + " lists them"
+                                   : "Did you mean " + as_option(meant) + "?");
 }
 
 void check_repeats(const Command& command, const Parsed& parsed) {
     for (const Option& option : command.options) {
         const auto found = parsed.values.find(option.long_name());
         if (found != parsed.values.end() && found->second.size() > 1 && !option.repeatable)
-            throw InputError("repeated option --" + found->first + ". Give it once.");
+            throw InputError("repeated option " + as_option(found->first), {}, "Give it once");
     }
 }
 
@@ -79,9 +79,9 @@ void take_suffix(const Command& command, Parsed& parsed) {
         for (const Option& option : command.options) {
             if (!path.ends_with("." + format)) continue;
             if (option.long_name() == "output" && option.value.ends_with(".h5"))
-                throw invalid_value("-o", path, "what is written there is HDF5", "Give " + option.value +
+                throw invalid_value(as_option("output"), path, "what is written there is HDF5", "Give " + option.value +
                     (command.name == "replay" ? "; --format json and csv print its numbers"
-                                              : "; `" + program_name() + " report` makes pages and tables of it"));
+                                              : "; " + as_command({"report"}) + " makes pages and tables of it"));
             if (option.long_name() == "format" && std::ranges::count(option.choices, format) > 0)
                 parsed.values.try_emplace("format", 1, format);
         }
@@ -105,19 +105,7 @@ std::optional<std::string> Parsed::text(const std::string& option) const {
 std::int64_t Parsed::integer(const std::string& option, std::int64_t otherwise, std::int64_t low,
                              std::int64_t high) const {
     const std::optional<std::string> given = text(option);
-    if (!given) return otherwise;
-    const std::optional<std::int64_t> number = to_integer(*given);
-    const std::string name = "--" + option;
-    const std::optional<double> size = to_number(*given);
-    if (!number && size && (*size < static_cast<double>(low) || *size > static_cast<double>(high)))
-        throw invalid_value(name, *given, "must be from " + std::to_string(low) + " to " + std::to_string(high),
-                            "Give a number in that range");
-    if (!number) throw invalid_value(name, *given, "not a whole number", "Give a number such as 10000 or 1e6");
-    if (*number < low)
-        throw invalid_value(name, *given, "must be at least " + std::to_string(low), "Give a larger number");
-    if (*number > high)
-        throw invalid_value(name, *given, "must be at most " + std::to_string(high), "Give a smaller number");
-    return *number;
+    return given ? parse_integer(as_option(option), *given, low, high) : otherwise;
 }
 
 std::uint64_t Parsed::seed(std::uint64_t otherwise) const {
@@ -127,19 +115,15 @@ std::uint64_t Parsed::seed(std::uint64_t otherwise) const {
     if (!given) return otherwise;
     const auto [end, error] = std::from_chars(given->data(), given->data() + given->size(), number);
     if (error == std::errc() && end == given->data() + given->size()) return number;
-    if (to_number(*given).value_or(0) > static_cast<double>(largest) / 2)
-        throw invalid_value("--seed", *given, "must be at most " + std::to_string(largest), "Give a smaller number");
-    return static_cast<std::uint64_t>(integer("seed", 0, 0, std::numeric_limits<std::int64_t>::max()));  // 1e6
+    const std::int64_t exact = to_integer(*given).value_or(-1);  // such as 1e6
+    if (exact >= 0) return static_cast<std::uint64_t>(exact);
+    throw invalid_value(as_option("seed"), *given, "must be a whole number from 0 to " + std::to_string(largest),
+                        "Give a number in that range");
 }
 
 double Parsed::real(const std::string& option, double otherwise, double low, double high) const {
     const std::optional<std::string> given = text(option);
-    if (!given) return otherwise;
-    const std::optional<double> number = to_number(*given);
-    if (!number || !(*number >= low && *number <= high))
-        throw invalid_value("--" + option, *given, "must be from " + to_text(low) + " to " + to_text(high),
-                            "Give a number in that range");
-    return *number;
+    return given ? parse_real(as_option(option), *given, between(low, high)) : otherwise;
 }
 
 std::string Parsed::choice(const std::string& option) const {
@@ -150,7 +134,7 @@ std::string Parsed::choice(const std::string& option) const {
     if (!given) return choices.front();
     for (const std::string& choice : choices)
         if (*given == choice) return choice;
-    throw invalid_value("--" + option, *given, "not one of its choices",
+    throw invalid_value(as_option(option), *given, "not one of its choices",
                         did_you_mean(*given, choices) + "Give one of " + joined(choices));
 }
 
@@ -161,7 +145,8 @@ Overrides Parsed::overrides() const {
     for (const std::string& assignment : found->second) {
         const std::size_t equals = assignment.find('=');
         if (equals == std::string::npos)
-            throw invalid_value("--set", assignment, "there is no = in it", "Write --set section.key=value");
+            throw invalid_value(as_option("set"), assignment, "there is no = in it",
+                                "Write " + as_option("set", "section.key=value"));
         overrides.emplace_back(trimmed(assignment.substr(0, equals)), trimmed(assignment.substr(equals + 1)));
     }
     return overrides;
@@ -187,7 +172,7 @@ std::optional<Parsed> parse(const Command& command, const std::vector<std::strin
     } catch (const po::unknown_option& error) {
         refuse_unknown(command, error.get_option_name());
     } catch (const po::error& error) {
-        throw InputError(printable(error.what()) + ". `" + program_name() + " " + command.name + " --help` shows how.");
+        throw InputError(printable(error.what()), {}, as_command({command.name, "--help"}) + " shows how");
     }
     if (parsed.has("help")) {
         std::cout << "usage: " << shown(program_name()) << " " << command.name << " " << command.arguments << "\n\n"
@@ -216,7 +201,7 @@ double parse_open_share(const Parsed& parsed, const std::string& option, const s
     const std::string given = parsed.text(option).value_or(usual);
     const double share = parse_share(given).value_or(0);
     if (!(share > 0 && share < 1))
-        throw invalid_value("--" + option, given, "must be between 0 and 100 %, both excluded",
+        throw invalid_value(as_option(option), given, "must be between 0 and 100 %, both excluded",
                             "Write " + usual + " or 0.05");
     return share;
 }
@@ -227,12 +212,12 @@ Limits parse_limits(const Parsed& parsed) {
     Limits limits(parse_open_share(parsed, "margin", "5%"), parse_failed(parsed));
     if (parsed.has("margin-direction")) limits.direction = parse_open_share(parsed, "margin-direction", "10%");
     if (limits.direction < limits.margin)
-        throw invalid_value("--margin-direction", *parsed.text("margin-direction"), "less than the margin",
-                            "Give at least --margin=" + to_text(limits.margin));
+        throw invalid_value(as_option("margin-direction"), *parsed.text("margin-direction"), "less than the margin",
+                            "Give at least " + as_option("margin", to_text(limits.margin)));
     const std::string bias = parsed.text("bias").value_or("0.1");
     limits.bias = to_number(bias).value_or(0);
     if (!(limits.bias > 0 && limits.bias <= 10))
-        throw invalid_value("--bias", bias, "must be above 0 and at most 10 sigmas", "Write 0.1");
+        throw invalid_value(as_option("bias"), bias, "must be above 0 and at most 10 sigmas", "Write 0.1");
     return limits;
 }
 
@@ -240,7 +225,7 @@ double parse_failed(const Parsed& parsed) {
     const std::string given = parsed.text("failed").value_or("1%");
     const double share = parse_share(given).value_or(-1);
     if (!(share >= 0 && share <= 1))
-        throw invalid_value("--failed", given, "must be from 0 to 100 %", "Write 1% or 0.01");
+        throw invalid_value(as_option("failed"), given, "must be from 0 to 100 %", "Write 1% or 0.01");
     return share;
 }
 
@@ -250,7 +235,8 @@ int parse_segments(const Parsed& parsed) {
     if (given == "off") return segments_off;
     const double steps = to_number(given).value_or(0);
     if (!(steps >= 2 && steps <= 1e9) || steps != std::floor(steps))
-        throw invalid_value("--segments", given, "must be a whole number of steps from 2 on, auto or off", "Write 50");
+        throw invalid_value(as_option("segments"), given, "must be a whole number of steps from 2 on, auto or off",
+                            "Write 50");
     return static_cast<int>(steps);
 }
 
@@ -264,7 +250,7 @@ std::vector<std::string> inputs_of(const Parsed& parsed) {
 std::optional<Output> check_output_option(const Parsed& parsed) {
     const std::optional<std::string> path = parsed.text("output");
     if (!path) return std::nullopt;
-    Output output = check_output(*path, parsed.has("overwrite"), "Give another name or --overwrite");
+    Output output = check_output(*path, parsed.has("overwrite"), "Give another name or " + as_option("overwrite"));
     check_not_read(output, inputs_of(parsed));
     return output;
 }
@@ -274,11 +260,7 @@ void print(const std::string& text) { std::cout << shown(text); }
 void say(const std::string& text) { std::cerr << shown(text) << std::flush; }
 
 void say_notes(const std::vector<Scenario>& scenarios, const std::string& command) {
-    std::set<std::string> said;  // keys: a sweep may have many such values of one
-    for (const Scenario& scenario : scenarios)
-        for (const std::string& note : notes_on(scenario))
-            if (said.insert(note.substr(0, note.find('='))).second)
-                say("credence " + command + ": note: " + note + "\n");
+    for (const std::string& note : notes_on(scenarios)) say(program_name() + " " + command + ": note: " + note + "\n");
 }
 
 void write_output(const Parsed& parsed, const std::string& text) {
@@ -295,29 +277,6 @@ Option sweep_option() {
             "run every scenario at each of these values: a,b,c, or a range first:last:count, or first:last:count:log; "
             "a|b where values hold commas; repeatable: a grid, the first key slowest; after --set", true};
 }
-
-Option margin_option() {
-    return {"margin", "SHARE", "NEES/dimension within 1 -+ this counts as consistent (default 5%)"};
-}
-
-Option margin_direction_option() {
-    return {
-        "margin-direction", "SHARE",
-        "the squared error of every combination of the state, over what P says, within 1 -+ this counts (default: "
-        "twice the margin)"};
-}
-
-Option bias_option() {
-    return {"bias", "SIGMAS", "a mean error of a component within this many of its sigmas counts (default 0.1)"};
-}
-
-Option require_option() {
-    return {"require", "VERDICT",
-            "consistent: exit with 1 unless all are shown to be; no-finding: unless none is refuted", false,
-            {"consistent", "no-finding"}};
-}
-
-Option strict_option() { return {"strict", "", "notes count as findings for --require"}; }
 
 Option failed_option(const std::string& what) {
     return {"failed", "SHARE", "where more than this share of the trials failed, " + what + " (default 1%)"};

@@ -91,11 +91,6 @@ void write_output(const Parsed& parsed, const std::string& text);
 // Options that several commands share.
 Option set_option();
 Option sweep_option();
-Option margin_option();
-Option margin_direction_option();
-Option bias_option();
-Option require_option();
-Option strict_option();
 /// --failed; `what`: the consequence of too many failed trials.
 Option failed_option(const std::string& what);
 Option output_option(const std::string& help, const std::string& value = "FILE");
@@ -103,6 +98,9 @@ Option output_option(const std::string& help, const std::string& value = "FILE")
 Option overwrite_option();
 /// --format: the first of `formats` by default.
 Option format_option(const std::vector<std::string>& formats);
+
+/// Options of report and judge, `more` those of one of them alone.
+std::vector<Option> verdict_options(const std::vector<Option>& more = {});
 
 /// A report, the path after which its page is called, and facts of how its numbers came about.
 struct Reported {

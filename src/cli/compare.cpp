@@ -28,7 +28,8 @@ const Command& compare_command() {
         "write FILE:ARM; without --arms the arms of each further file against those of the first, so that the "
         "same world\n"
         "under --set filter.measurement=0.8 shows what that did. Records (" +
-            program_name() + " judge) of the same runs are compared too.\n",
+            program_name() + " judge) of the same runs are compared\n"
+            "too; of a record of several arms, FILE:ARM is one.\n",
         {{"arms", "A,B", "what to compare: ARM or FILE:ARM, twice"},
          failed_option("a warning comes first"),
          format_option({"text", "json", "csv", "html"}),
@@ -40,10 +41,10 @@ const Command& compare_command() {
 namespace {
 
 void check_paths(const std::vector<std::string>& paths) {
-    if (paths.empty()) throw InputError("no results file given. Name one or more FILE.h5.");
+    if (paths.empty()) throw InputError("no results file given", {}, "Name one or more FILE.h5");
     std::set<std::string> seen;
     for (const std::string& path : paths)
-        if (!seen.insert(path).second) throw InputError("repeated file " + path + ". Name each once.");
+        if (!seen.insert(path).second) throw InputError("repeated file " + path, {}, "Name each once");
 }
 
 /// Adds the records of a path as arms of one scenario; `first` is the first record of all.
@@ -60,8 +61,8 @@ void add_records(const std::string& path, std::string& first, Study& study) {
         ScenarioResults &all = study.scenarios.front(), &other = one.scenarios.front();
         const auto named = [](const Column& column) { return column.name + " " + column.unit; };
         if (!std::ranges::equal(all.columns, other.columns, {}, named, named))
-            throw InputError("cannot compare " + record + " with " + first +
-                             " (they have other columns, or in other units). Give records of the same runs.");
+            throw InputError("cannot compare " + record + " with " + first,
+                             "they have other columns, or in other units", "Give records of the same runs");
         all.arms.push_back(std::move(other.arms.front()));
     }
 }
@@ -80,13 +81,14 @@ std::vector<StudyFile> read_files(const std::vector<std::string>& paths) {
         ScenarioResults& results = files.back().study.scenarios.front();
         const bool is_one = results.arms.size() == 1;
         if (is_one && paths.size() == 1)
-            throw InputError("compare takes several records of the same runs. Give another.");
+            throw InputError("compare takes several records of the same runs", {}, "Give another");
         scenarios.push_back(std::exchange(results.scenario.name, "record"));
         arms.push_back(is_one ? std::exchange(results.arms.front().name, "record") : "record");
         if (files.back().study.trials != files.front().study.trials)
-            throw InputError("cannot compare " + path + " with " + paths.front() + " (it has " +
-                             std::to_string(files.back().study.trials) + " trials, not " +
-                             std::to_string(files.front().study.trials) + "). Give records of the same runs.");
+            throw InputError("cannot compare " + path + " with " + paths.front(),
+                             "it has " + std::to_string(files.back().study.trials) + " trials, not " +
+                                 std::to_string(files.front().study.trials),
+                             "Give records of the same runs");
     }
     if (records && !std::ranges::count(arms, "record")) {
         const bool differ = std::set<std::string>(arms.begin(), arms.end()).size() == arms.size();

@@ -2,9 +2,9 @@
 
 #include "files/hdf5/read.hpp"
 #include "files/record.hpp"
-#include "base/program_name.hpp"
 #include "base/readable_file.hpp"
 #include "base/text_stream.hpp"
+#include "base/wording.hpp"
 #include "files/results/format.hpp"
 
 #include <credence/error.hpp>
@@ -51,18 +51,15 @@ struct Words {
     std::string name, advice;
 };
 
-std::string command(const std::string& words) { return "`" + program_name() + " " + words + "`"; }
-
 Words words_of(FileKind kind, const std::string& path) {
-    const std::string file = shell_word(path);
     const Words words[] = {
-        {"a scenario", command("run " + file) + " runs it"},
-        {"a results file", command("report " + file) + " reads it"},
+        {"a scenario", as_command({"run", path}) + " runs it"},
+        {"a results file", as_command({"report", path}) + " reads it"},
         {"the trajectory file of a replay", "`python -m credence.pictures` and whatever opens HDF5 read it"},
-        {"a record", command("judge " + file) + " reads it"},
-        {"a noise record", command("replay SCENARIO.ini --noise " + file) + " reads it"},
+        {"a record", as_command({"judge", path}) + " reads it"},
+        {"a noise record", as_command({"replay", "SCENARIO.ini", "--noise", path}) + " reads it"},
         {"the journal of a run",
-         command("watch " + file) + " follows it, and " + command("run --resume") + " resumes it"},
+         as_command({"watch", path}) + " follows it, and " + as_command({"run", "--resume"}) + " resumes it"},
     };
     return words[static_cast<std::size_t>(kind)];
 }
@@ -87,8 +84,8 @@ void check_kind(const std::string& path, const std::vector<FileKind>& accepted) 
     const FileKind kind = kind_of(path);
     if (kind == FileKind::unknown || std::count(accepted.begin(), accepted.end(), kind) > 0) return;
     const Words words = words_of(kind, path);
-    throw InputError("cannot read " + path + " (it is " + words.name + ", not " +
-                     words_of(accepted.front(), path).name + "). " + words.advice + ".");
+    throw InputError("cannot read " + path, "it is " + words.name + ", not " + words_of(accepted.front(), path).name,
+                     words.advice);
 }
 
 }  // namespace credence::cli

@@ -28,26 +28,18 @@ const Command& judge_command() {
         "range\n"
         "not included): parts of the state that are judged by themselves. A component is NaN where it is not in the\n"
         "state. docs/judge.md has the rest, such as covariances or NEES of groups alone, and poses on manifolds.\n"
+        "Of a record of several arms, FILE:ARM is one.\n"
         "With --require consistent the exit code is 1 unless the verdict is `consistent`; with --require no-finding it "
         "is 1\nif the filter is refuted: `undecided` passes.\n",
-        {margin_option(),
-         margin_direction_option(),
-         bias_option(),
-         {"segments", "STEPS",
-          "count few long runs by segments of so many steps; off; or auto (the default): ten times the steps over "
-          "which errors decorrelate, for fewer than 20 runs"},
-         failed_option("the verdict is `failed`"),
-         format_option({"text", "json", "csv", "html"}),
-         require_option(),
-         strict_option(),
-         {"quiet", "", "no progress"},
-         output_option("write there, not to the standard output"),
-         overwrite_option()}};
+        verdict_options({{"segments", "STEPS",
+                          "count few long runs by segments of so many steps; off; or auto (the default): ten times the "
+                          "steps over which errors decorrelate, for fewer than 20 runs"},
+                         {"quiet", "", "no progress"}})};
     return command;
 }
 
 Reported judged(const Parsed& parsed) {
-    if (parsed.arguments.empty()) throw InputError("judge takes one record or several. Give RECORD.h5.");
+    if (parsed.arguments.empty()) throw InputError("judge takes one record or several", {}, "Give RECORD.h5");
     const Limits limits = parse_limits(parsed);
     const int segments = parse_segments(parsed);
     std::vector<std::string> records;

@@ -24,15 +24,15 @@ const Command& merge_command() {
 }
 
 int merge(const Parsed& parsed, const std::string& command_line) {
-    if (parsed.arguments.empty()) throw InputError("no results file given. Name the files of the shards.");
+    if (parsed.arguments.empty()) throw InputError("no results file given", {}, "Name the files of the shards");
     const std::optional<Output> output = check_output_option(parsed);
-    if (!output) throw InputError("no -o given. Name the results file to write.");
+    if (!output) throw InputError("no -o given", {}, "Name the results file to write");
     allow_open_files();
     for (const std::string& shard : parsed.arguments) check_kind(shard, {FileKind::results});
     const Study study = merge_results(parsed.arguments);
     if (!study.complete)
-        throw Failure("blocks are missing: " + missing_text(study) +
-                      ". Run or resume the shards that have them, then merge again.");
+        throw Failure("blocks are missing: " + missing_text(study), {},
+                      "Run or resume the shards that have them, then merge again");
     RunFacts facts = build_facts();
     facts.emplace_back("merged_files", std::to_string(parsed.arguments.size()));
     facts.emplace_back("command_line", command_line);

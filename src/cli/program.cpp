@@ -8,6 +8,7 @@
 #include "cli/version.hpp"
 
 #include "base/program_name.hpp"
+#include "base/wording.hpp"
 #include <credence/error.hpp>
 #include <credence/program.hpp>
 #include "worlds/simulate.hpp"
@@ -93,8 +94,8 @@ int dispatch(const std::string& name, const std::vector<std::string>& arguments,
         names.push_back(subcommand.command().name);
     }
     const std::string meant = closest(name, names);
-    throw InputError("unknown command " + printable(name) + ". " +
-                     (meant.empty() ? "`" + program_name() + " --help` lists them." : "Did you mean " + meant + "?"));
+    throw InputError("unknown command " + printable(name), {},
+                     meant.empty() ? as_command({"--help"}) + " lists them" : "Did you mean " + meant + "?");
 }
 
 }  // namespace
@@ -168,6 +169,7 @@ int obey_or_complain(const std::vector<std::string>& words) {
 
 int program(int argc, char** argv) {
     cli::hold_standard_streams();
+    wording() = program_wording;
     // When the process ends HDF5 would close its open objects, and might crash over an object that a damaged file kept
     // from being closed. Files that credence writes are closed, and checked, long before.
     H5dont_atexit();

@@ -12,7 +12,7 @@
 
 #include "base/formatted.hpp"
 #include "base/nan.hpp"
-#include "base/program_name.hpp"
+#include "base/wording.hpp"
 #include "study/releases.hpp"
 
 #include <algorithm>
@@ -47,8 +47,8 @@ namespace {
 std::vector<Trajectory> replay_noise(const Parsed& parsed, const std::string& record_path) {
     for (const char* option : {"scenario", "arm", "trial"})
         if (parsed.has(option))
-            throw InputError(std::string("--") + option +
-                             " does not go with --noise (a record is one trial, for all arms). Leave it out.");
+            throw InputError(as_option(option) + " does not go with " + as_option("noise"),
+                             "a record is one trial, for all arms", "Leave it out");
     check_kind(parsed.arguments.front(), {FileKind::scenario});
     check_kind(record_path, {FileKind::noise});
     const Scenario scenario = read_scenario(parsed.arguments.front(), parsed.overrides());
@@ -59,7 +59,7 @@ std::vector<Trajectory> replay_noise(const Parsed& parsed, const std::string& re
 std::string given_or_only(const Parsed& parsed, const std::string& option, const std::vector<std::string>& names) {
     if (const std::optional<std::string> value = parsed.text(option)) return *value;
     if (names.size() == 1) return names.front();
-    throw InputError("missing --" + option + ". It is one of " + joined(names) + ".");
+    throw InputError("missing " + as_option(option), {}, "It is one of " + joined(names));
 }
 
 const ScenarioResults& find_scenario(const Study& study, const Parsed& parsed) {
@@ -68,7 +68,7 @@ const ScenarioResults& find_scenario(const Study& study, const Parsed& parsed) {
     const std::string name = given_or_only(parsed, "scenario", names);
     for (const ScenarioResults& results : study.scenarios)
         if (results.scenario.name == name) return results;
-    throw invalid_value("--scenario", name, "not in the file", "It has " + joined(names));
+    throw invalid_value(as_option("scenario"), name, "not in the file", "It has " + joined(names));
 }
 
 /// The index of the arm that a name denotes: its own name, or that of the only arm of a controller.
@@ -78,7 +78,8 @@ std::size_t find_arm(const ScenarioResults& results, const Parsed& parsed) {
     const std::string name = given_or_only(parsed, "arm", names);
     const std::vector<const ArmResults*> meant = arms_meant(results, name);
     if (meant.size() == 1) return static_cast<std::size_t>(meant.front() - results.arms.data());
-    throw invalid_value("--arm", name, meant.empty() ? "not in the scenario" : "several arms have that controller",
+    throw invalid_value(as_option("arm"), name,
+                        meant.empty() ? "not in the scenario" : "several arms have that controller",
                         "It has " + joined(names));
 }
 
@@ -86,8 +87,8 @@ std::size_t find_arm(const ScenarioResults& results, const Parsed& parsed) {
 std::int64_t row_of(const ScenarioResults& results, std::int64_t trial) {
     const std::optional<std::int64_t> first = first_row(results, trial / block_size);
     if (!first || *first + trial % block_size >= results.trials)
-        throw invalid_value("--trial", std::to_string(trial), "the file is a part of a study and does not have it",
-                            "Give one that it has");
+        throw invalid_value(as_option("trial"), std::to_string(trial),
+                            "the file is a part of a study and does not have it", "Give one that it has");
     return *first + trial % block_size;
 }
 
@@ -97,15 +98,18 @@ bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)
 /// What to add about a trial that differs where another release computed it, whose draws or columns may differ.
 std::string other_release(const Study& study) {
     const std::string other = unmixable(study.computed_by, made_by());
-    return other.empty() ? "" : " " + why_unmixable(other, made_by()) + ". Replay it with that release.";
+    return other.empty() ? "" : why_unmixable(other, made_by()) + ". Replay it with that release";
 }
 
 std::vector<Trajectory> replay_stored(const Parsed& parsed) {
     if (parsed.has("set"))
-        throw InputError("--set does not go with a results file (the trial would be another). Leave it out.");
+        throw InputError(as_option("set") + " does not go with a results file", "the trial would be another",
+                         "Leave it out");
     check_kind(parsed.arguments.front(), {FileKind::results});
     if (!parsed.has("trial"))
-        throw InputError("missing --trial. Give FILE.h5 --trial I, or SCENARIO.ini --noise RECORD.h5.");
+        throw InputError("missing " + as_option("trial"), {},
+                         "Give FILE.h5 " + as_option("trial", "I") + ", or SCENARIO.ini " +
+                             as_option("noise", "RECORD.h5"));
     const Study study = read_results(parsed.arguments.front(), 0).study;
     const ScenarioResults& results = find_scenario(study, parsed);
     const std::size_t a = find_arm(results, parsed);
@@ -117,7 +121,8 @@ std::vector<Trajectory> replay_stored(const Parsed& parsed) {
                      replayed = trajectory.column_values[static_cast<std::size_t>(column - trajectory.columns.begin())];
         if (!same(stored, replayed))
             throw Failure("the replayed trial differs from " + parsed.arguments.front() + ": " + column->name + " is " +
-                          to_text(replayed) + ", stored is " + to_text(stored) + "." + other_release(study));
+                              to_text(replayed) + ", stored is " + to_text(stored),
+                          {}, other_release(study));
     }
     return {std::move(trajectory)};
 }
@@ -210,8 +215,8 @@ std::string as_text(const std::vector<Trajectory>& trajectories) {
 
 int replay(const Parsed& parsed, const std::string& command_line) {
     if (parsed.arguments.size() != 1)
-        throw InputError("replay takes one results file or one scenario. `" + program_name() +
-                         " replay --help` shows how.");
+        throw InputError("replay takes one results file or one scenario", {},
+                         as_command({"replay", "--help"}) + " shows how");
     const std::string format = parsed.choice("format");
     const std::optional<std::string> noise = parsed.text("noise");
     const std::optional<Output> output = check_output_option(parsed);

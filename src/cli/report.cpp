@@ -17,16 +17,27 @@ const Command& report_command() {
         "say what a results file proves, with confidence",
         "\nWith --require consistent the exit code is 1 unless every arm's verdict is `consistent`; with --require\n"
         "no-finding it is 1 if an arm is refuted: `undecided` passes.\n",
-        {margin_option(),
-         margin_direction_option(),
-         bias_option(),
-         failed_option("the verdict is `failed`"),
-         format_option({"text", "json", "csv", "html"}),
-         require_option(),
-         strict_option(),
-         output_option("write there, not to the standard output"),
-         overwrite_option()}};
+        verdict_options()};
     return command;
+}
+
+std::vector<Option> verdict_options(const std::vector<Option>& more) {
+    std::vector<Option> options{
+        {"margin", "SHARE", "NEES/dimension within 1 -+ this counts as consistent (default 5%)"},
+        {"margin-direction", "SHARE",
+         "the squared error of every combination of the state, over what P says, within 1 -+ this counts (default: "
+         "twice the margin)"},
+        {"bias", "SIGMAS", "a mean error of a component within this many of its sigmas counts (default 0.1)"},
+        failed_option("the verdict is `failed`"),
+        format_option({"text", "json", "csv", "html"}),
+        {"require", "VERDICT",
+         "consistent: exit with 1 unless all are shown to be; no-finding: unless none is refuted", false,
+         {"consistent", "no-finding"}},
+        {"strict", "", "notes count as findings for --require"},
+        output_option("write there, not to the standard output"),
+        overwrite_option()};
+    options.insert(options.end() - 2, more.begin(), more.end());
+    return options;
 }
 
 std::string rendered(const Report& report, const std::string& format, const std::string& path, const RunFacts& run) {
@@ -41,7 +52,8 @@ int give_report(const Parsed& parsed, Reported (*make)(const Parsed&)) {
     check_output_option(parsed);
     if (parsed.has("require")) parsed.choice("require");
     else if (parsed.has("strict"))
-        throw InputError("--strict says nothing without --require. Add --require no-finding or --require consistent.");
+        throw InputError("--strict says nothing without --require", {},
+                         "Add --require no-finding or --require consistent");
     const Reported given = make(parsed);
     write_output(parsed, rendered(given.report, format, given.path, given.run));
     if (parsed.has("require"))
@@ -52,7 +64,7 @@ int give_report(const Parsed& parsed, Reported (*make)(const Parsed&)) {
 }
 
 Reported reported(const Parsed& parsed) {
-    if (parsed.arguments.size() != 1) throw InputError("report takes one results file. Give FILE.h5.");
+    if (parsed.arguments.size() != 1) throw InputError("report takes one results file", {}, "Give FILE.h5");
     const std::string& path = parsed.arguments.front();
     const Limits limits = parse_limits(parsed);
     check_kind(path, {FileKind::results});

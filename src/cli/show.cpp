@@ -5,6 +5,8 @@
 #include <credence/text.hpp>
 #include <credence/detail/worlds.hpp>
 
+#include "base/wording.hpp"
+
 #include <algorithm>
 
 namespace credence::cli {
@@ -43,7 +45,7 @@ DescribedKey described_world() {
 }
 
 int show(const Parsed& parsed) {
-    if (parsed.arguments.size() > 1) throw InputError("show takes one scenario. Give one file.");
+    if (parsed.arguments.size() > 1) throw InputError("show takes one scenario", {}, "Give one file");
     const std::vector<SweepAxis> axes = parsed.sweep();
     if (!parsed.arguments.empty()) {
         check_kind(parsed.arguments.front(), {FileKind::scenario});
@@ -52,7 +54,7 @@ int show(const Parsed& parsed) {
         say_notes(scenarios, "show");
         return 0;
     }
-    if (!axes.empty()) throw InputError("--sweep needs a scenario. Give SCENARIO.ini.");
+    if (!axes.empty()) throw InputError(as_option("sweep") + " needs a scenario", {}, "Give SCENARIO.ini");
     const Scenario scenario = read_scenario_text("", "defaults", "scenario", parsed.overrides());
     const std::vector<DescribedKey> keys = world_of(scenario).keys();
     const DescribedKey world = described_world();

@@ -63,7 +63,7 @@ std::string results_path(const std::string& given) {
 }  // namespace
 
 int watch(const Parsed& parsed) {
-    if (parsed.arguments.size() != 1) throw InputError("watch takes one results file. Give FILE.h5.");
+    if (parsed.arguments.size() != 1) throw InputError("watch takes one results file", {}, "Give FILE.h5");
     const std::string format = parsed.choice("format");
     const double every = parsed.real("every", 2, 0.1, 3600);
     check_kind(parsed.arguments.front(), {FileKind::results, FileKind::journal});

@@ -2,6 +2,7 @@
 
 #include <credence/error.hpp>
 
+#include "base/wording.hpp"
 #include "files/results/links.hpp"
 #include "files/journal/journal.hpp"
 #include "files/system/system_file.hpp"
@@ -20,7 +21,7 @@ void check_same_study(const StudyDefinition& there, const StudyDefinition& asked
                       const std::string& remedy) {
     const std::string difference = difference_of(there, asked);
     if (!difference.empty())
-        throw InputError("cannot resume " + path + " (it holds another study: " + difference + "). " + remedy + ".");
+        throw InputError("cannot resume " + path, "it holds another study: " + difference, remedy);
 }
 
 /// Whether `whole` has every trial of `part`, which is of the same study.
@@ -36,6 +37,10 @@ bool holds(const ScenarioResults& whole, const ScenarioResults& part) {
 bool holds(const Study& whole, const Study& part) {
     return std::equal(whole.scenarios.begin(), whole.scenarios.end(), part.scenarios.begin(), part.scenarios.end(),
                       [](const ScenarioResults& a, const ScenarioResults& b) { return holds(a, b); });
+}
+
+std::string ways_out() {
+    return "Give another name, " + as_option("resume") + " or " + as_option("overwrite");
 }
 
 /// The file's identity as in a journal's header.
@@ -63,7 +68,7 @@ StoredRun::Contents StoredRun::Contents::of(const Study& study) {
 }
 
 StoredRun::StoredRun(const std::string& path, Study study, Start start, const std::string& release)
-    : output_(check_output(path, start != Start::fresh, "Give another name, --resume or --overwrite")),
+    : output_(check_output(path, start != Start::fresh, ways_out())),
       journal_path_(journal_path_of(path)),
       start_(start),
       release_(release.substr(0, commit_release_size)),  // cut as in a journal
@@ -81,11 +86,10 @@ void StoredRun::open_journal() {
     const std::optional<struct stat> status = status_of(journal_path_);
     if (!status) return;
     if (!S_ISREG(status->st_mode))
-        throw InputError("cannot write " + output_.path + " (" + journal_path_ +
-                         " is in the way of its journal). Remove that, or give another name.");
+        throw InputError("cannot write " + output_.path, journal_path_ + " is in the way of its journal",
+                         "Remove that, or give another name");
     if (start_ == Start::fresh)
-        throw InputError("cannot write " + output_.path + " (an interrupted run left " + journal_path_ +
-                         "). Give another name, --resume or --overwrite.");
+        throw InputError("cannot write " + output_.path, "an interrupted run left " + journal_path_, ways_out());
     if (start_ == Start::resume) journal_ = std::make_unique<Journal>(journal_path_);
 }
 
@@ -105,16 +109,15 @@ void StoredRun::resume_journal(const JournalHeader& header, const StudyDefinitio
         return unexpected ? choose(asked) : journal_->load(study_);
     }
     if (!output_.there)
-        throw InputError("cannot resume " + journal_path_ + " (" + output_.path +
-                         ", which it extends, is gone). Put that back, or remove the journal and start anew.");
+        throw InputError("cannot resume " + journal_path_, output_.path + ", which it extends, is gone",
+                         "Put that back, or remove the journal and start anew");
     read_file(asked);
     try {
         journal_->load(study_);
     } catch (const InputError&) {
         if (is_base_of(header)) throw;
-        throw InputError("cannot resume " + journal_path_ + " (" + output_.path +
-                         " is not the file that it extends). Put that back, or remove the journal to resume " +
-                         output_.path + " as it is.");
+        throw InputError("cannot resume " + journal_path_, output_.path + " is not the file that it extends",
+                         "Put that back, or remove the journal to resume " + output_.path + " as it is");
     }
 }
 
@@ -128,8 +131,9 @@ void StoredRun::choose(const StudyDefinition& asked) {
         in_file_ = Contents::of(study_);
         journal_is_over_ = true;
     } else if (!holds(study_, in_file)) {
-        throw InputError("cannot resume " + output_.path + " (it and " + journal_path_ +
-                         " each have trials that the other lacks). Move it away, --resume, and merge both.");
+        throw InputError("cannot resume " + output_.path,
+                         "it and " + journal_path_ + " each have trials that the other lacks",
+                         "Move it away, " + as_option("resume") + ", and merge both");
     }
 }
 
@@ -156,8 +160,8 @@ bool StoredRun::is_base_of(const JournalHeader& header) const {
 void StoredRun::check_releases() const {
     const std::string other = unmixable(study_.computed_by, release_);
     if (!other.empty())
-        throw InputError("cannot resume " + output_.path + " (" + why_unmixable(other, release_) +
-                         "). Go on with that release, or name another output.");
+        throw InputError("cannot resume " + output_.path, why_unmixable(other, release_),
+                         "Go on with that release, or name another output");
 }
 
 BlockKeeper& StoredRun::begin(std::int64_t trials, std::int64_t commit_every, const Shard& shard) {
@@ -166,8 +170,8 @@ BlockKeeper& StoredRun::begin(std::int64_t trials, std::int64_t commit_every, co
     if (!journal_) journal_ = std::make_unique<Journal>(journal_path_, permissions_of(output_.target));
     if (!goes_on) {
         if (start_ != Start::overwrite && journal_->header() && !journal_is_over_)
-            throw InputError("cannot write " + output_.path + " (another run has just begun " + journal_path_ +
-                             "). Let it end, or give another name.");
+            throw InputError("cannot write " + output_.path, "another run has just begun " + journal_path_,
+                             "Let it end, or give another name");
         const JournalBase base = in_file_                     ? JournalBase::grown
                                  : start_ == Start::overwrite ? JournalBase::replaced
                                                               : JournalBase::none;
@@ -183,9 +187,9 @@ BlockKeeper& StoredRun::begin(std::int64_t trials, std::int64_t commit_every, co
 /// Throws Failure where the values that were read back for the results differ from the committed ones.
 void StoredRun::check_unchanged() const {
     if (in_file_ && identity_of(output_.target) != output_.there)
-        throw Failure("cannot write " + output_.path +
-                      " (another program changed, replaced or removed it while the run "
-                      "went on with it). Put back what was there.");
+        throw Failure("cannot write " + output_.path,
+                      "another program changed, replaced or removed it while the run went on with it",
+                      "Put back what was there");
     if (journal_) journal_->check_unchanged();
 }
 
@@ -195,7 +199,7 @@ void StoredRun::write(const RunFacts& facts) {
         write_results(output_, study_, facts, [this] { check_unchanged(); });
     } catch (const InputError& error) {  // the values that were to be read back are damaged
         check_unchanged();
-        throw Failure(error.what());
+        throw Failure(error.complaint());
     }
 }
 

@@ -17,7 +17,7 @@ namespace {
 constexpr double largest_asymmetry = 1e-9;
 
 void refuse_asymmetry(const std::string& dataset, const RecordStep& step, int i, int j, double above, double below) {
-    throw RecordError(dataset,
+    throw RecordError(record_place(dataset),
                       "trial " + std::to_string(step.trial) + ", step " + std::to_string(step.step) +
                           " (both counted from 0) is not symmetric: [" + std::to_string(i) + ", " + std::to_string(j) +
                           "] is " + to_text(above) + ", [" + std::to_string(j) + ", " + std::to_string(i) + "] is " +
@@ -74,7 +74,7 @@ std::string read_innovation(const RecordStep& step, const RecordShape& shape, Ch
     for (std::size_t i = 0; i < checked.rows.size(); ++i)
         checked.nu(static_cast<Eigen::Index>(i)) = step.innovation[checked.rows[i]];
     if (!checked.nu.allFinite()) return "the innovation is not finite";
-    return read_symmetric("/innovation_covariance", step, step.innovation_covariance, shape.m, checked.rows,
+    return read_symmetric("innovation_covariance", step, step.innovation_covariance, shape.m, checked.rows,
                           shape.innovation_epsilon, checked.S)
                ? ""
                : "the innovation covariance is not finite";

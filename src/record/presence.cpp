@@ -110,7 +110,7 @@ std::string PresenceChecker::read_covariance(const RecordStep& step, CheckedStep
     if (std::string wrong = matrix_trouble(step.covariance, members_[0], checked, "the covariance"); !wrong.empty())
         return wrong;
     const bool all = here_.size() == checked.here.size();
-    if (!read_symmetric("/covariance", step, step.covariance, shape_.n, here_, shape_.covariance_epsilon,
+    if (!read_symmetric("covariance", step, step.covariance, shape_.n, here_, shape_.covariance_epsilon,
                         all ? checked.P : part_))
         return "the covariance is not finite";
     if (all) return {};
@@ -144,7 +144,7 @@ std::string PresenceChecker::read_own(const RecordStep& step, std::size_t b, Che
         !wrong.empty())
         return wrong;
     if (!checked.whole(group)) return {};
-    return read_symmetric("/group/" + group.name + "/covariance", step, step.own[b], group.count,
+    return read_symmetric("group/" + group.name + "/covariance", step, step.own[b], group.count,
                           counted_up(group.count), shape_.group_epsilons[b], checked.own[b])
                ? ""
                : "the covariance of group " + in_ticks(group.name) + " is not finite";

@@ -61,14 +61,17 @@ Record read_in_chart(RecordReader reader, const std::string& name, const ReportP
 
 namespace {
 
-/// What `use` makes of a reader of arrays, a part of which fits a cache; errors have the remedies of arrays.
+/// What `use` makes of a reader of arrays, a part of which fits a cache; errors have the places and remedies of arrays.
 template <class Use>
 auto with_reader(const RecordArrays& arrays, const Use& use) {
     constexpr std::int64_t part_numbers = (std::int64_t{1} << 20) / 8;
+    const PlacesAreArrays named;
     try {
         return use(RecordReader(ArraySource(arrays), part_numbers));
     } catch (const RecordError& error) {
-        throw InputError(error.what() + (". " + error.remedy_of_arrays()) + ".");
+        Complaint complaint = error.complaint();
+        complaint.remedy = error.remedy_of_arrays();
+        throw InputError(complaint);
     }
 }
 

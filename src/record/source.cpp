@@ -10,13 +10,13 @@
 namespace credence {
 
 std::string record_place(const std::string& path) {
-    const std::size_t slash = path.rfind('/');
-    if (slash == std::string::npos) return "/" + printable(path);
-    return printable("/" + path.substr(0, slash)) + "/" + printable(path.substr(slash + 1));
+    const std::size_t name = path.rfind('/') + 1;  // 0 where there is none
+    return (PlacesAreArrays::now ? "" : "/") + printable(path.substr(0, name)) + printable(path.substr(name));
 }
 
 std::string record_attribute_place(const std::string& name, const std::string& path) {
-    return printable("/" + path) + "@" + printable(name);
+    const std::string object = PlacesAreArrays::now ? path : "/" + path;
+    return printable(object) + (object.empty() ? "" : "@") + printable(name);
 }
 
 ListEntries list_entries(const std::string& text) {

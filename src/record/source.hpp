@@ -18,11 +18,11 @@ namespace credence {
 /// An error of a record, at a place that has the name of the file.
 class RecordError : public PlacedError {
 public:
-    RecordError(const std::string& place, const std::string& problem, std::string remedy = {},
+    RecordError(const std::string& place, const std::string& problem, const std::string& remedy = {},
                 std::string of_arrays = {})
-        : PlacedError(place, problem, std::move(remedy)), of_arrays_(std::move(of_arrays)) {}
+        : PlacedError(place, problem, remedy), of_arrays_(std::move(of_arrays)) {}
     /// The remedy of a caller in Python, who gives arrays in memory.
-    const std::string& remedy_of_arrays() const { return of_arrays_.empty() ? remedy() : of_arrays_; }
+    const std::string& remedy_of_arrays() const { return of_arrays_.empty() ? complaint().remedy : of_arrays_; }
 
 private:
     std::string of_arrays_;
@@ -89,9 +89,16 @@ public:
     virtual std::optional<std::uint64_t> seed() const { return std::nullopt; }
 };
 
-/// Names for messages, as in a file: `/group/pose/nees`, `/@groups`.
+/// Names for messages, as in a file: `/group/pose/nees`, `/@groups`; of arrays those of arguments: `nees`, `groups`.
 std::string record_place(const std::string& path);
 std::string record_attribute_place(const std::string& name, const std::string& path = "");
+
+/// While an object exists, places that this thread names are those of arrays.
+struct PlacesAreArrays {
+    static inline thread_local bool now = false;
+    PlacesAreArrays() { now = true; }
+    ~PlacesAreArrays() { now = false; }
+};
 
 /// A record in arrays, which must outlive it and its datasets.
 class ArraySource : public RecordSource {

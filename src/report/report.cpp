@@ -156,8 +156,7 @@ void require(const Report& report, Requirement requirement, bool strict) {
                              sentence(arm.consistency.cautions.front()) + ")");
     }
     if (!others.empty())
-        throw Failure(std::string("required ") + (proof ? "consistent" : "no finding") + ", but " + joined(others) +
-                      ".");
+        throw Failure(std::string("required ") + (proof ? "consistent" : "no finding") + ", but " + joined(others));
 }
 
 }  // namespace credence

@@ -14,11 +14,9 @@ namespace {
 const std::string published_section = "published.";
 
 double published_value(const std::string& key, const std::string& text) {
-    constexpr double largest = 1e9;
     const std::optional<double> value = to_number(text);
-    if (!value) throw invalid_value(key, text, "not a number", "Give arms with their numbers, such as greedy.kf 0.12");
-    if (!(std::abs(*value) <= largest))
-        throw invalid_value(key, text, "must be from -1e+09 to 1e+09",
+    if (!value || !(std::abs(*value) <= 1e9))
+        throw invalid_value(key, text, "not a number from -1e+09 to 1e+09",
                             "Give arms with their numbers, such as greedy.kf 0.12");
     return *value;
 }

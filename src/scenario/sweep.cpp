@@ -4,6 +4,8 @@
 #include <credence/detail/scenario.hpp>
 #include <credence/text.hpp>
 
+#include "base/wording.hpp"
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -13,8 +15,10 @@ namespace credence {
 
 namespace {
 
-InputError invalid_sweep(const std::string& text, const std::string& why, const std::string& remedy) {
-    return invalid_value("--sweep", text, why, remedy);
+/// Without a remedy: how to write one.
+InputError invalid_sweep(const std::string& text, const std::string& why, const std::string& remedy = {}) {
+    return invalid_value(as_option("sweep"), text, why,
+                         remedy.empty() ? "Write " + as_option("sweep", "section.key=a,b,c") : remedy);
 }
 
 /// Names, units and what is shown beside the series make no other study; another world has other keys.
@@ -146,8 +150,7 @@ std::vector<SweepCoordinate> parse_coordinates(const std::string& text) {
 
 SweepAxis parse_axis(const std::string& text) {
     const std::size_t equals = text.find('=');
-    if (equals == std::string::npos)
-        throw invalid_sweep(text, "there is no = in it", "Write --sweep section.key=a,b,c");
+    if (equals == std::string::npos) throw invalid_sweep(text, "there is no = in it");
     SweepAxis axis{trimmed(text.substr(0, equals)), {}};
     if (axis.key == "scenario.world")
         throw invalid_sweep(text, "a grid is of one world", "Give a scenario of each");
@@ -158,7 +161,7 @@ SweepAxis parse_axis(const std::string& text) {
     std::vector<std::string> listed = split_list(items, separator);
     if (separator == '|' && listed.size() > 1 && listed.back().empty()) listed.pop_back();  // `0, 0.3|`: one value
     for (const std::string& item : listed) {
-        if (item.empty()) throw invalid_sweep(text, "a value is empty", "Write --sweep section.key=a,b,c");
+        if (item.empty()) throw invalid_sweep(text, "a value is empty");
         if (item.find(':') == std::string::npos) {
             axis.values.push_back(written_alike(item));
             continue;
@@ -166,7 +169,7 @@ SweepAxis parse_axis(const std::string& text) {
         const NumberRange range = parse_range(text, item);
         for (std::size_t i = 0; i < range.count; ++i) axis.values.push_back(to_text(range.at(i)));
     }
-    if (axis.values.empty()) throw invalid_sweep(text, "it has no value", "Write --sweep section.key=a,b,c");
+    if (axis.values.empty()) throw invalid_sweep(text, "it has no value");
     return axis;
 }
 
@@ -177,7 +180,8 @@ std::vector<SweepAxis> parse_grid(const std::vector<std::string>& texts) {
         SweepAxis axis = parse_axis(text);
         for (const SweepAxis& other : axes)
             if (other.key == axis.key)
-                throw invalid_sweep(text, axis.key + " is swept twice", "Give all its values in one --sweep");
+                throw invalid_sweep(text, axis.key + " is swept twice",
+                                    "Give all its values in one " + as_option("sweep"));
         std::set<std::string> values;
         for (const std::string& value : axis.values)
             if (!values.insert(value).second)

@@ -84,8 +84,8 @@ void require_all_columns(const Study& study, const std::string& cannot) {
     for (const ScenarioResults& results : study.scenarios)
         for (const Column& column : world_of(results.scenario).columns(results.scenario))
             if (std::ranges::find(results.columns, column.name, &Column::name) == results.columns.end())
-                throw InputError(cannot + " (it has no column " + column.name +
-                                 ", which trials have since then). Report it as it is, or run the study again.");
+                throw InputError(cannot, "it has no column " + column.name + ", which trials have since then",
+                                 "Report it as it is, or run the study again");
 }
 
 ScenarioResults empty_results(const Scenario& scenario, Keep keep) {

@@ -1,6 +1,7 @@
 // Running a study's blocks on threads.
 
 #include "base/idle_threads.hpp"
+#include "base/wording.hpp"
 #include "study/block_results.hpp"
 #include "study/commits.hpp"
 #include "study/schedule.hpp"
@@ -175,7 +176,7 @@ void bring_into_memory(ScenarioResults& results) {
 
 void run_study(Study& study, const RunOptions& options) {
     if (const std::int64_t least = least_trials(study); least > options.trials)
-        throw invalid_value("--trials", std::to_string(options.trials),
+        throw invalid_value(as_option("trials"), std::to_string(options.trials),
                             "the study has been asked for " + std::to_string(least) + " already",
                             "Ask for at least as many");
     if (options.keeper == nullptr)

@@ -3,6 +3,7 @@
 #include "study/stopping_subject.hpp"
 
 #include "base/choice.hpp"
+#include "base/wording.hpp"
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>
@@ -17,7 +18,7 @@ namespace {
 const char* const how_to_write = "Write METRIC=0.01, METRIC=0.5% or METRIC[ARM-ARM]=0.01";
 
 InputError refused(const std::string& goal, const std::string& why, const std::string& remedy = how_to_write) {
-    return invalid_value("--until", goal, why, remedy);
+    return invalid_value(as_option("until"), goal, why, remedy);
 }
 
 void parse_half_width(StoppingGoal& goal, std::string width) {

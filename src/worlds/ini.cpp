@@ -7,6 +7,7 @@
 
 #include "base/readable_file.hpp"
 #include "base/text_stream.hpp"
+#include "base/wording.hpp"
 
 #include <boost/program_options.hpp>
 
@@ -28,7 +29,7 @@ struct Assignment {
     int line = 0;
 };
 
-std::string place(const std::string& origin, int line) { return origin + ":" + std::to_string(line) + ": "; }
+std::string place(const std::string& origin, int line) { return origin + ":" + std::to_string(line); }
 
 /// Reads one line through Boost's INI parser; `section` is carried from line to line.
 std::vector<Assignment> read_line(const std::string& text, const std::string& origin, int line, std::string& section) {
@@ -36,7 +37,7 @@ std::vector<Assignment> read_line(const std::string& text, const std::string& or
     if (bare.empty()) return {};
     if (bare.front() == '[') {
         if (bare.back() != ']' || bare.size() < 3)
-            throw InputError(place(origin, line) + "broken section `" + printable(bare) + "`. Write [section].");
+            throw InputError("broken section `" + printable(bare) + "`", {}, "Write [section]").at(place(origin, line));
         section = trimmed(std::string_view(bare).substr(1, bare.size() - 2));
         return {};
     }
@@ -47,7 +48,7 @@ std::vector<Assignment> read_line(const std::string& text, const std::string& or
         for (const auto& option : po::parse_config_file(stream, nothing_declared, true).options)
             read.push_back({option.string_key, trimmed(joined(option.value)), line});
     } catch (const po::error&) {
-        throw InputError(place(origin, line) + "broken line `" + printable(bare) + "`. Write key = value.");
+        throw InputError("broken line `" + printable(bare) + "`", {}, "Write key = value").at(place(origin, line));
     }
     return read;
 }
@@ -61,8 +62,9 @@ std::vector<Assignment> read_lines(const std::string& text, const std::string& o
         for (Assignment& one : read_line(line, origin, number, section)) {
             const auto [first, is_new] = lines.emplace(one.key, number);
             if (!is_new)
-                throw InputError(place(origin, number) + "repeated key " + printable(one.key) + " (it is in line " +
-                                 std::to_string(first->second) + " already). Keep one of them.");
+                throw InputError("repeated key " + printable(one.key),
+                                 "it is in line " + std::to_string(first->second) + " already", "Keep one of them")
+                    .at(place(origin, number));
             all.push_back(std::move(one));
         }
     return all;
@@ -80,21 +82,17 @@ std::optional<Given> given(const std::string& key, const std::vector<Assignment>
     for (const Assignment& one : assignments)
         if (one.key == key) last = Given{one.value, place(origin, one.line)};
     for (const auto& [name, value] : overrides)
-        if (name == key) last = Given{trimmed(value), "--set " + key + ": "};
+        if (name == key) last = Given{trimmed(value), as_option("set", key)};
     return last;
 }
 
 /// An empty scenario of the world that the text or an override names.
 std::unique_ptr<Draft> draft_of(const std::vector<Assignment>& assignments, const std::string& origin,
                                 const Overrides& overrides) {
-    const Given world = given(world_key, assignments, origin, overrides).value_or(Given{first_world, origin + ": "});
+    const Given world = given(world_key, assignments, origin, overrides).value_or(Given{first_world, origin});
     Scenario named;
     named.world = world.value;
-    try {
-        return world_of(named).draft();
-    } catch (const InputError& error) {
-        throw InputError(world.where + error.what(), error.key());
-    }
+    return at_place(world.where, [&] { return world_of(named).draft(); });
 }
 
 /// Sets a key of the world, or of the place in a grid, which scenarios of every world have.
@@ -111,20 +109,12 @@ std::map<std::string, int> fill(Draft& draft, SweepPoint& sweep, const std::vect
     std::map<std::string, int> lines;
     for (const Assignment& one : assignments) {
         if (one.key == world_key) continue;
-        try {
-            set(draft, sweep, one.key, one.value);
-        } catch (const InputError& error) {
-            throw InputError(place(origin, one.line) + error.what(), error.key());
-        }
+        at_place(place(origin, one.line), [&] { set(draft, sweep, one.key, one.value); });
         lines[one.key] = one.line;
     }
     for (const auto& [key, value] : overrides) {
         if (key == world_key) continue;
-        try {
-            set(draft, sweep, key, trimmed(value));
-        } catch (const InputError& error) {
-            throw InputError("--set " + printable(key) + ": " + error.what(), error.key());
-        }
+        at_place(as_option("set", printable(key)), [&] { set(draft, sweep, key, trimmed(value)); });
         lines.erase(key);
     }
     return lines;
@@ -132,7 +122,7 @@ std::map<std::string, int> fill(Draft& draft, SweepPoint& sweep, const std::vect
 
 std::string text_of_file(const std::string& path) {
     const auto refuse = [&](const std::string& why, const std::string& remedy) {
-        return InputError("cannot read scenario " + path + " (" + why + "). " + remedy + ".");
+        return InputError("cannot read scenario " + path, why, remedy);
     };
     try {
         std::string text = start_of_file(path, largest_file + 1);
@@ -171,21 +161,14 @@ void check_place(const Scenario& scenario) {
 
 /// A scenario at a point of its grid, where it goes by another name.
 Scenario declared_at(Draft& draft, const std::string& origin, const SweepPoint& point, const std::string& name) {
-    for (const SweepCoordinate& one : point.at) {
-        try {
-            draft.set(one.key, one.value);
-        } catch (const InputError& error) {
-            throw InputError("--sweep " + printable(one.key) + ": " + error.what(), error.key());
-        }
-    }
-    try {
+    for (const SweepCoordinate& one : point.at)
+        at_place(as_option("sweep", printable(one.key)), [&] { draft.set(one.key, one.value); });
+    return at_place(origin + " at " + printable(coordinates_text(point.at)), [&] {
         draft.set("scenario.name", name);
         Scenario scenario = draft.declare();
         scenario.sweep = point;
         return scenario;
-    } catch (const InputError& error) {
-        throw InputError(origin + " at " + printable(coordinates_text(point.at)) + ": " + error.what(), error.key());
-    }
+    });
 }
 
 }  // namespace
@@ -210,9 +193,8 @@ Scenario read_scenario_text(const std::string& text, const std::string& origin, 
         check_place(scenario);
         return scenario;
     } catch (const InputError& error) {
-        const auto line = lines.find(error.key());
-        throw InputError((line == lines.end() ? origin + ": " : place(origin, line->second)) + error.what(),
-                         error.key());
+        const auto line = lines.find(error.complaint().subject);
+        throw error.at(line == lines.end() ? origin : place(origin, line->second));
     }
 }
 
@@ -231,8 +213,9 @@ std::vector<Scenario> read_grid(const std::string& path, const Overrides& overri
         SweepPoint before;
         fill(*draft, before, assignments, path, overrides);
         if (!before.of.empty())
-            throw InputError("cannot sweep " + path + " (it is a point of a grid already: sweep.of=" +
-                             printable(before.of) + "). Remove its section [sweep], or sweep the scenario it is of.");
+            throw InputError("cannot sweep " + path,
+                             "it is a point of a grid already: sweep.of=" + printable(before.of),
+                             "Remove its section [sweep], or sweep the scenario it is of");
         scenarios.push_back(declared_at(*draft, path, {name, at}, point_name(name, axes, at)));
     }
     return scenarios;

@@ -1,7 +1,7 @@
 #include "worlds/values.hpp"
 
 #include "base/choice.hpp"
-#include "base/program_name.hpp"
+#include "base/wording.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -38,9 +38,22 @@ int parse_feature_index(const std::string& value, const std::string& text) {
 /// The refusal of a text that is no number.
 InputError no_number(const std::string& name, const std::string& value, const std::string& kind,
                      const std::string& range) {
-    if (value.find(',') == std::string::npos) return invalid_value(name, value, "not a " + kind, "It " + range);
+    const bool is_key = name.find('.') != std::string::npos;  // and no option
+    if (!is_key || value.find(',') == std::string::npos)
+        return invalid_value(name, value, "not a " + kind, "It " + range);
     return invalid_value(name, value, "it has a comma, and one number is wanted",
-                         "Write decimals with a point, several values as --sweep " + name + "=" + value);
+                         "Write decimals with a point, several values as " + as_option("sweep", name + "=" + value));
+}
+
+/// The parts of a list between commas.
+std::vector<std::string> list_parts(const std::string& name, const std::string& value) {
+    std::vector<std::string> parts = split_list(value), words;
+    for (const std::string& part : parts)
+        for (const std::string& word : split_list(part, ' '))
+            if (!word.empty()) words.push_back(word);
+    if (words.size() > parts.size())
+        throw invalid_value(name, value, "blanks part what commas should", "Write " + joined(words));
+    return parts;
 }
 
 /// A list of names of an enumeration, without repeats.
@@ -60,21 +73,23 @@ std::vector<Enum> parse_names(const std::string& name, const std::string& value,
 
 }  // namespace
 
-std::vector<std::string> list_parts(const std::string& name, const std::string& value) {
-    std::vector<std::string> parts = split_list(value), words;
-    for (const std::string& part : parts)
-        for (const std::string& word : split_list(part, ' '))
-            if (!word.empty()) words.push_back(word);
-    if (words.size() > parts.size())
-        throw invalid_value(name, value, "blanks part what commas should", "Write " + joined(words));
-    return parts;
-}
-
 double parse_real(const std::string& name, const std::string& value, const ValueRange& range) {
     const std::optional<double> number = to_number(value);
     if (!number) throw no_number(name, value, "number", range_text(range));
     if (!inside(*number, range)) throw invalid_value(name, value, range_text(range), "Give a number in that range");
     return *number;
+}
+
+std::vector<double> parse_reals(const std::string& name, const std::string& value, const ValueRange& range) {
+    std::vector<double> values;
+    for (const std::string& part : list_parts(name, value)) values.push_back(parse_real(name, part, range));
+    return values;
+}
+
+std::string reals_text(const std::vector<double>& values) {
+    std::vector<std::string> parts;
+    for (const double value : values) parts.push_back(to_text(value));
+    return joined(parts);
 }
 
 std::int64_t parse_integer(const std::string& name, const std::string& value, std::int64_t low, std::int64_t high) {
@@ -160,9 +175,7 @@ std::optional<double> parse_truncate(const std::string& value) {
 std::optional<std::vector<double>> parse_turns(const std::string& value) {
     if (value == "default") return std::nullopt;
     if (value == "none") return std::vector<double>{};
-    std::vector<double> turns;
-    for (const std::string& part : list_parts("planner.turns", value))
-        turns.push_back(parse_real("planner.turns", part, between(-3.2, 3.2)));
+    std::vector<double> turns = parse_reals("planner.turns", value, between(-3.2, 3.2));
     if (turns.empty() || turns.size() > 100)
         throw invalid_value("planner.turns", value, std::to_string(turns.size()) + " turns",
                             "Give 1 to 100, in radians");
@@ -172,9 +185,7 @@ std::optional<std::vector<double>> parse_turns(const std::string& value) {
 std::string turns_text(const std::optional<std::vector<double>>& turns) {
     if (!turns) return "default";
     if (turns->empty()) return "none";
-    std::vector<std::string> parts;
-    for (const double turn : *turns) parts.push_back(to_text(turn));
-    return joined(parts);
+    return reals_text(*turns);
 }
 
 const std::vector<std::string>& controller_names() {
@@ -235,20 +246,18 @@ std::string is_unit(const std::string& value) {
 void refuse_again(const InputError& refusal, const std::string& value, const std::vector<std::string>& choices) {
     const auto told = [&](const std::string& word) -> std::string {
         static const std::set<std::string> other_filters{"ukf", "ckf", "enkf", "eskf", "msckf", "imm", "pf"};
-        const bool estimator = refusal.key() == "arms.estimators";
+        const bool estimator = refusal.complaint().subject == "arms.estimators";
         if (std::ranges::count(choices, word) > 0 || word.find(' ') != std::string::npos) return {};
         return (estimator && other_filters.contains(word) ? "" : did_you_mean(word, choices)) +
                (estimator ? "docs/own-filter.md says how to run a filter of your own. " : "");
     };
-    std::string message = refusal.what();
-    const std::string end_of_reason = "). ";
-    const std::size_t end = message.rfind(end_of_reason);
+    Complaint complaint = refusal.complaint();
     for (const std::string& word : split_list(value))
         if (const std::string remedy = told(word); !remedy.empty()) {
-            if (end != std::string::npos) message.insert(end + end_of_reason.size(), remedy);
+            complaint.remedy = remedy + complaint.remedy;
             break;
         }
-    throw InputError(message, refusal.key());
+    throw InputError(complaint);
 }
 
 namespace {
@@ -292,12 +301,11 @@ void refuse_unknown_key(const std::string& key, const std::vector<std::string>& 
     const bool sectioned_twice = std::ranges::find(known, whole) != known.end();
     const std::vector<std::string> meant = keys_meant(key, known);
     const std::size_t dot = whole.find('.');
-    throw InputError("unknown key " + printable(key) + ". " +
-                         (sectioned_twice ? "Under [" + whole.substr(0, dot) + "] write " + whole.substr(dot + 1) + "."
-                          : !meant.empty()        ? "Did you mean " + joined(meant, " or ") + "?"
-                          : known.size() > a_line ? "`" + program_name() + " show` prints every key."
-                                                   : "The keys are " + joined(known) + "."),
-                     key);
+    throw InputError("unknown key " + printable(key), {},
+                     sectioned_twice ? "Under [" + whole.substr(0, dot) + "] write " + whole.substr(dot + 1)
+                     : !meant.empty()        ? "Did you mean " + joined(meant, " or ") + "?"
+                     : known.size() > a_line ? as_command({"show"}) + " prints every key"
+                                             : "The keys are " + joined(known));
 }
 
 }  // namespace credence

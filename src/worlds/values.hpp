@@ -27,9 +27,10 @@ inline ValueRange between(double low, double high) { return {low, high, true, fa
 inline bool has_variance(double sigma) { return sigma * sigma > 1e-200; }
 inline const std::string above_least = "above 1e-100";
 
-/// The parts of a list between commas. Throws InputError where blanks stand for commas.
-std::vector<std::string> list_parts(const std::string& name, const std::string& value);
 double parse_real(const std::string& name, const std::string& value, const ValueRange& range);
+/// Several between commas, or none. Throws InputError where blanks stand for commas.
+std::vector<double> parse_reals(const std::string& name, const std::string& value, const ValueRange& range);
+std::string reals_text(const std::vector<double>& values);
 std::int64_t parse_integer(const std::string& name, const std::string& value, std::int64_t low, std::int64_t high);
 std::size_t parse_choice(const std::string& name, const std::string& value, const std::vector<std::string>& choices);
 
@@ -64,9 +65,11 @@ std::string names_text(const std::vector<Enum>& values, const std::vector<std::s
 // A key of one field. `field` gives the field of a scenario, constant or not, as a reference.
 
 template <class S = DeformableSettings, class Field>
-KeyOf<S> real_key(const std::string& name, const std::string& help, const ValueRange& range, Field field) {
-    return {name, help, [=](S& s, const std::string& v) { field(s) = parse_real(name, v, range); },
-            [=](const S& s) { return to_text(field(s)); }};
+KeyOf<S> real_key(const std::string& name, const std::string& help, const ValueRange& range, Field field,
+                  const std::string& sigma_unit = {}) {
+    return {name, help + (sigma_unit.empty() ? "" : " (" + sigma_unit + ")"),
+            [=](S& s, const std::string& v) { field(s) = parse_real(name, v, range); },
+            [=](const S& s) { return to_text(field(s)); }, {}, false, sigma_unit};
 }
 
 template <class S = DeformableSettings, class Field>

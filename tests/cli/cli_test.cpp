@@ -18,15 +18,6 @@ namespace {
 
 const std::string small = " --trials 300 --threads 2 --quiet ";
 
-/// One line, on the error stream, from the program: nothing on the other one.
-void check_refused(const Outcome& outcome, const std::string& what) {
-    INFO(outcome.err);
-    CHECK(outcome.exit_code == 2);
-    CHECK_THAT(outcome.err, Contains(what));
-    CHECK(outcome.err.find('\n') == outcome.err.size() - 1);
-    CHECK(outcome.out.empty());
-}
-
 }  // namespace
 
 TEST_CASE("cli: run writes a file, and report gives JSON with an object per scenario and arm") {
@@ -174,11 +165,11 @@ TEST_CASE("cli: bad input is refused in one line with exit code 2, and nothing i
     check_refused(here.credence("run repeated.ini"), "repeated.ini:3: repeated key noise.walk");
     check_refused(here.credence("run broken.ini"), "broken.ini:2: broken line");
     check_refused(here.credence("run missing.ini"), "missing.ini (there is no such file)");
-    check_refused(here.credence("run good.ini --trials 0"), "invalid --trials=0 (must be at least 1)");
+    check_refused(here.credence("run good.ini --trials 0"), "invalid --trials=0 (must be at least 1 and at most 10000");
     check_refused(here.credence("run good.ini --trials x"), "invalid --trials=x (not a whole number)");
     check_refused(here.credence("run good.ini --trials 1.5"), "invalid --trials=1.5 (not a whole number)");
-    check_refused(here.credence("run good.ini --seed -1"), "invalid --seed=-1 (must be at least 0)");
-    check_refused(here.credence("run good.ini --threads 0"), "invalid --threads=0 (must be at least 1)");
+    check_refused(here.credence("run good.ini --seed -1"), "invalid --seed=-1 (must be a whole number from 0 to 18446");
+    check_refused(here.credence("run good.ini --threads 0"), "invalid --threads=0 (must be at least 1 and at most 4");
     check_refused(here.credence("run good.ini --trials 5 --trials 6"), "repeated option --trials");
     check_refused(here.credence("run good.ini --trails 5"), "unknown option --trails. Did you mean --trials?");
     check_refused(here.credence("run good.ini --tri 5"), "unknown option --tri");
@@ -225,7 +216,7 @@ TEST_CASE("cli: replay of a stored trial checks it, and writes its trajectory") 
     CHECK(one[0]["status"] == "completed");
     CHECK(one[0]["trace_P"].get<double>() > 0);
     CHECK(here.names() == std::vector<std::string>{"credence.h5", "t.h5"});
-    check_refused(here.credence(which + "--trial 300"), "invalid --trial=300 (must be at most 299)");
+    check_refused(here.credence(which + "--trial 300"), "invalid --trial=300 (must be at least 0 and at most 299)");
     check_refused(here.credence("replay credence.h5 --scenario x --arm greedy.ekf --trial 1"), "invalid --scenario=x");
     check_refused(here.credence("replay credence.h5 --scenario ekf-circle-ranged --arm greedy.kf --trial 1"),
                   "It has fixed.ekf, greedy.ekf");

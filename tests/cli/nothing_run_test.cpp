@@ -47,8 +47,8 @@ TEST_CASE("cli: a run that cannot fit is refused before any work, unless --force
     const Workplace here;
     here.write("small.ini", "[scenario]\nname = small\nposes = 3\n");
     const std::string run = CREDENCE_PROGRAM " run small.ini --quiet -o x.h5 --threads 1 ";
-    check_refused(here.shell(run + "--trials 1e12"), "are there). Ask for less, see --dry-run, or start it all the same "
-                                                     "with --force.");
+    check_refused(here.shell(run + "--trials 1e12"),
+                  "are there). Ask for less, see --dry-run, or start it all the same with --force.");
 #ifndef CREDENCE_SANITIZED  // which takes terabytes of addresses
     check_refused(here.shell("ulimit -v 400000; " + run + "--set scenario.poses=20000 --trials 256"), "of memory (");
 #endif

@@ -141,7 +141,7 @@ void check_refused(const std::string& name, const std::string& value) {
         CHECK(message.starts_with("invalid " + name + "="));
         CHECK(message.ends_with("."));
         CHECK(message.find('\n') == std::string::npos);
-        CHECK(error.key() == name);
+        CHECK(error.complaint().subject == name);
     }
 }
 

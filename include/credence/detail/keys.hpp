@@ -22,6 +22,7 @@ struct KeyOf {
     std::vector<std::string> choices{};  ///< values, or words among them, to offer; empty: any in range
     /// The key came after studies whose files stay usable: a study's hash leaves it out where it has its default.
     bool later = false;
+    std::string sigma_unit{};  ///< the unit of a standard deviation, such as rad; empty for anything else
 };
 
 /// Throws InputError for a key that is not among `known`, with the closest one that is.

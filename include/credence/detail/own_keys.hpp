@@ -42,10 +42,14 @@ public:
             keys_.push_back({basic.name, basic.help, basic.set, basic.get, basic.choices});
     }
 
-    /// A number in [low, high].
-    void real(const std::string& key, double Settings::* member, double low, double high, const std::string& help) {
-        add(key, help, {}, [=](Settings& s, const std::string& text) { s.*member = own_real(key, text, low, high); },
+    /// A number in [low, high]. Of a standard deviation its unit may be given, which help then shows: in rad, a value
+    /// above 1 is noted.
+    void real(const std::string& key, double Settings::* member, double low, double high, const std::string& help,
+              const std::string& sigma_unit = {}) {
+        add(key, help + (sigma_unit.empty() ? "" : " (" + sigma_unit + ")"), {},
+            [=](Settings& s, const std::string& text) { s.*member = own_real(key, text, low, high); },
             [=](const Settings& s) { return own_text(s.*member); });
+        keys_.back().sigma_unit = sigma_unit;
     }
     /// A whole number in [low, high].
     void integer(const std::string& key, int Settings::* member, int low, int high, const std::string& help) {

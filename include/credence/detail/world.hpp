@@ -45,6 +45,7 @@ public:
 struct DescribedKey {
     std::string key, value, help;         ///< its default, and what it means
     std::vector<std::string> choices{};   ///< to offer; empty: any in range
+    std::string sigma_unit{};             ///< as of KeyOf
 };
 
 /// A kind of world.

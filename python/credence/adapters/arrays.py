@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from credence import InputError, Record, judge
-from credence._names import printable
+from credence._errors import invalid, printable, wrong
 from credence.adapters.tables import existing, needed, note, one_line
 
 
@@ -87,7 +87,7 @@ def from_mat(
     arguments = _arguments(source, {name: array for name, array in variables.items() if name[:2] != "__"}, names)
     order = order or _order(source, arguments)
     if order not in ("F", "C"):
-        raise InputError(f"invalid order={order} (must be F or C). Give one of them.")
+        raise invalid("order", order, "must be F or C", "Give one of them")
 
     def turned(name: str, array: Any) -> Any:
         if not isinstance(array, np.ndarray):
@@ -123,7 +123,7 @@ def _arguments(source: str, file: Mapping[str, Any], names: Mapping[str, str] | 
     data = [*(field.name for field in fields(Record) if field.name != "columns"), "runs"]
     for name, array in (names or {}).items():
         if name not in data:
-            raise InputError(f"invalid names ({printable(name)} is no data of judge). Name some of {', '.join(data)}.")
+            raise wrong("names", f"{printable(name)} is no data of judge", f"Name some of {', '.join(data)}")
         if array not in file:
             raise InputError(f"{source}: there is no array {printable(array)} in it (it has {', '.join(file)})")
     called = {name: name for name in data} | dict(names or {})

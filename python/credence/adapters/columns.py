@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from credence import InputError
 from credence._arrays import numbers
+from credence._errors import InputError, argument
 from credence.adapters.tables import (
     UNITS,
     Array,
@@ -161,7 +161,7 @@ class _Components:
             note(f"{source}: {self.names[i]}: {what}. They are folded. If it is in degrees, say {self._units(i)}.")
 
     def _units(self, i: int) -> str:
-        return f"units {self.names[i]}=deg"
+        return f"{argument('units')} {self.names[i]}=deg"
 
     def _in_degrees(self, source: str, i: int, why: str) -> InputError:
         name = self.names[i]

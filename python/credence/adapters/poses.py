@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from credence import InputError
+from credence._errors import InputError, argument, invalid
 from credence.adapters.tables import Array, needed, neighbours, normalised, note, require_unit, say_matched, stacked
 
 ALIGNMENTS = ("none", "first", "se3")
@@ -57,7 +57,8 @@ def _require_times(estimate: Poses, truth: Poses) -> None:
     """Refuse poses whose times are counted where their truth has others."""
     if estimate.counted != truth.counted:
         without = (estimate if estimate.counted else truth).source
-        raise InputError(f"{without}: it has no times, and the poses of the other file have. Give their times (times).")
+        has = "it has no times, and the poses of the other file have"
+        raise InputError(f"{without}: {has}. Give their times ({argument('times')}).")
     if estimate.counted and len(estimate.time) != len(truth.time):
         has = f"it has {len(truth.time)} poses, and {estimate.source} {len(estimate.time)}"
         raise InputError(f"{truth.source}: {has}. Give the true pose of each line, or files with times.")
@@ -188,7 +189,7 @@ def _check_frames(estimate: Poses, truth: Poses, kept: Sequence[int]) -> None:
     if sigmas > 5:
         note(
             f"{estimate.source}: its first pose is {far} from the truth, {sigmas:.3g} sigmas. Are both in one frame? "
-            "Nothing is aligned unless you ask for it (align)."
+            f"Nothing is aligned unless you ask for it ({argument('align')})."
         )
 
 
@@ -287,9 +288,9 @@ def pose_arguments(
     """The arguments of judge from a pair of estimate and truth for each run; :func:`from_tum` says what each option
     does."""
     if align not in ALIGNMENTS:
-        raise InputError(f"invalid align={align} (must be none, first or se3). Give one of them.")
+        raise invalid("align", align, "must be none, first or se3", "Give one of them")
     if manifold not in ("SE3", "R3 x SO3"):
-        raise InputError(f"invalid manifold={manifold} (must be SE3 or R3 x SO3). Give one of them.")
+        raise invalid("manifold", manifold, "must be SE3 or R3 x SO3", "Give one of them")
     for estimate, _ in pairs:
         if estimate.covariance is None:
             raise InputError(f"{estimate.source}: its poses have no covariances. Give a log that has them.")
@@ -306,7 +307,7 @@ def pose_arguments(
         else:  # which moves the first pose, too
             note(
                 f"{estimate.source}: with {offset:+.3g} s added to its times the squared errors of its positions "
-                f"would be {gain:.0%} smaller. Nothing is shifted unless you ask for it (time_offset)."
+                f"would be {gain:.0%} smaller. Nothing is shifted unless you ask for it ({argument('time_offset')})."
             )
     true, estimated = (_states(each) for each in (truths, [estimate for estimate, _ in runs]))
     return {

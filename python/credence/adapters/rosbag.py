@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from credence import InputError
+from credence._errors import InputError, argument
 from credence.adapters.poses import Poses, pose_arguments
 from credence.adapters.tables import Path, needed, note, one_line, paired, units_given
 from credence.adapters.trajectories import read_poses
@@ -77,8 +77,8 @@ def _chosen(reader: Any, source: str, types: Sequence[str], option: str, without
     links = [f"{topic}:{link}" for topic in transforms for link in _links(reader, topic)] if without else []
     why = "several topics have" if found else "no topic has"
     what = "poses for a truth" if without else "poses with covariances"
-    choice = ", ".join([*found, *links])
-    raise InputError(f"{source}: {why} {what}. Name the topic ({option})" + (f": {choice}." if choice else "."))
+    choice = ": " * bool(found or links) + ", ".join([*found, *links])
+    raise InputError(f"{source}: {why} {what}. Name the topic ({argument(option)}){choice}.")
 
 
 def _read(bag: Path, topic: str | None, estimate_topic: str | None) -> tuple[Poses, str]:

@@ -12,9 +12,9 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from credence import InputError
 from credence._calls import note as note
 from credence._doors import needed as needed
+from credence._errors import InputError, argument
 
 Array = NDArray[np.float64]
 Path = str | os.PathLike[str]
@@ -44,10 +44,11 @@ def units_given(units: Mapping[str, str] | None, kinds: Mapping[str, Sequence[st
     given = dict(units or {})
     for name, unit in given.items():
         if name not in kinds:
-            raise InputError(f"units: {name} is nothing that has one here. Give some of {', '.join(kinds)}.")
+            some = ", ".join(kinds)
+            raise InputError(f"{argument('units')}: {name} is nothing that has one here. Give some of {some}.")
         known = [one for one, (kind, _) in UNITS.items() if kind in kinds[name]]
         if unit not in known:
-            raise InputError(f"units: {name} cannot be in {unit}. Give one of {', '.join(known)}.")
+            raise InputError(f"{argument('units')}: {name} cannot be in {unit}. Give one of {', '.join(known)}.")
     return given
 
 
@@ -59,7 +60,7 @@ def seconds(source: str, times: Array, unit: str, name: str = "", *, noted: bool
     if len(rising) > 1:
         apart = float(np.median(np.diff(rising))) / scale
         usual = [one for one, (kind, of) in UNITS.items() if kind == "time" and 1e-3 <= apart * scale / of <= 1]
-        say = f"Say their unit, such as units {name}={(usual or ['ms'])[0]}" if name else "Give them in s"
+        say = f"Say their unit, such as {argument('units')} {name}={(usual or ['ms'])[0]}" if name else "Give them in s"
         taken = f"its times are taken for {unit}, in which they are {apart:.3g} s apart"
         if apart < shortest:
             raise InputError(f"{source}: {taken} (must be at least 1e-06 s). {say}.")
@@ -136,7 +137,7 @@ def say_matched(source: str, times: Array, found: NDArray[np.intp], truth: str, 
         span, of_truth = (f"{each.min():.10g} to {each.max():.10g} s" for each in (times, of))
         raise InputError(
             f"{source}: no pose has a truth within a gap of {max_gap:g} s (its times are {span}, those of {truth} "
-            f"{of_truth}). Give the truth of this run, or a larger max_gap."
+            f"{of_truth}). Give the truth of this run, or a larger {argument('max_gap')}."
         )
     if len(found) < len(times):
         left = f"{len(times) - len(found)} of {len(times)} poses have no truth within a gap of {max_gap:g} s"

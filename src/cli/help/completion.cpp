@@ -144,7 +144,7 @@ std::string script() {
 }  // namespace
 
 int completion(const Parsed& parsed) {
-    if (parsed.arguments.size() != 1) throw InputError("completion takes the name of a shell. Give bash.");
+    if (parsed.arguments.size() != 1) throw InputError("completion takes the name of a shell", {}, "Give bash");
     if (parsed.arguments.front() != "bash")
         throw invalid_value("shell", parsed.arguments.front(), "only bash can be completed", "Give bash");
     std::cout << script();

@@ -72,9 +72,9 @@ std::optional<std::int64_t> free_space(const std::string& path) {
 void check_stack() {
     const std::size_t stack = smallest_stack();
     if (stack >= least_stack) return;
-    throw InputError("cannot run with a stack of " + std::to_string(stack >> 10) + " kB (at least " +
-                     std::to_string(least_stack >> 10) + " kB are needed). Raise it by ulimit -s 8192, and leave "
-                     "OMP_STACKSIZE unset.");
+    throw InputError("cannot run with a stack of " + std::to_string(stack >> 10) + " kB",
+                     "at least " + std::to_string(least_stack >> 10) + " kB are needed",
+                     "Raise it by ulimit -s 8192, and leave OMP_STACKSIZE unset");
 }
 
 void allow_open_files() {

@@ -14,13 +14,17 @@ struct Place {
     std::int64_t index = 0, count = 1;
 };
 
+const char* const give_shard = "Give --shard I/N";
+
+InputError invalid_auto(const std::string& why, const std::string& remedy = give_shard) {
+    return InputError("invalid --shard auto", why, remedy);
+}
+
 std::int64_t number_in(const Variables& variables, const std::string& name) {
     const std::optional<std::string> text = variables(name);
-    if (!text)
-        throw InputError("invalid --shard auto (" + name +
-                         " is not set, though others of its kind are). Give --shard I/N.");
+    if (!text) throw invalid_auto(name + " is not set, though others of its kind are");
     const std::optional<std::int64_t> number = to_integer(*text);
-    if (!number) throw invalid_value(name, *text, "not a whole number, for --shard auto", "Give --shard I/N");
+    if (!number) throw invalid_value(name, *text, "not a whole number, for --shard auto", give_shard);
     return *number;
 }
 
@@ -31,8 +35,8 @@ std::int64_t number_in(const Variables& variables, const std::string& name, std:
 /// Throws where the place is invalid.
 Place checked(const Place& place, const std::string& index_name, const std::string& count_name) {
     if (place.count < 1 || place.index < 0 || place.index >= place.count)
-        throw InputError("invalid --shard auto (" + index_name + " and " + count_name + " say " +
-                         std::to_string(place.index) + " of " + std::to_string(place.count) + "). Give --shard I/N.");
+        throw invalid_auto(index_name + " and " + count_name + " say " + std::to_string(place.index) + " of " +
+                           std::to_string(place.count));
     return place;
 }
 
@@ -41,13 +45,13 @@ std::optional<Place> array_place(const Variables& variables) {
     if (!variables(id_name)) return std::nullopt;
     const std::int64_t id = number_in(variables, id_name), first = number_in(variables, array + "MIN", 0),
                        step = number_in(variables, array + "STEP", 1), count = number_in(variables, array + "COUNT");
-    if (step < 1) throw invalid_value(array + "STEP", std::to_string(step), "must be at least 1", "Give --shard I/N");
+    if (step < 1) throw invalid_value(array + "STEP", std::to_string(step), "must be at least 1", give_shard);
     const std::int64_t last = number_in(variables, array + "MAX", first + (count - 1) * step);
     if (last != first + (count - 1) * step || (id - first) % step != 0)
-        throw InputError("invalid --shard auto (task " + std::to_string(id) +
-                         " is of an array that is no range: " + std::to_string(count) + " tasks from " +
-                         std::to_string(first) + " to " + std::to_string(last) + ", step " + std::to_string(step) +
-                         "). Submit a range such as --array=0-7, or give --shard I/N.");
+        throw invalid_auto("task " + std::to_string(id) + " is of an array that is no range: " + std::to_string(count) +
+                               " tasks from " + std::to_string(first) + " to " + std::to_string(last) + ", step " +
+                               std::to_string(step),
+                           "Submit a range such as --array=0-7, or give --shard I/N");
     return checked({(id - first) / step, count}, id_name, array + "COUNT");
 }
 
@@ -84,13 +88,12 @@ Shard parse_shard(const std::string& text) {
 Shard shard_of_launcher(const Variables& variables) {
     const std::optional<Place> task = array_place(variables), process = process_place(variables);
     if (!task && !process)
-        throw InputError(
-            "invalid --shard auto (the variables of a task of a Slurm array, of srun and of mpirun are not in the "
-            "environment). Start it by one of them, or give --shard I/N.");
+        throw invalid_auto("the variables of a task of a Slurm array, of srun and of mpirun are not in the environment",
+                           "Start it by one of them, or give --shard I/N");
     const Place outer = task.value_or(Place{}), inner = process.value_or(Place{});
     constexpr std::int64_t most = std::int64_t{1} << 31;
     if (outer.count > most || inner.count > most)
-        throw InputError("invalid --shard auto (too many shards). Give --shard I/N.");
+        throw invalid_auto("too many shards");
     return {outer.index * inner.count + inner.index, outer.count * inner.count};
 }
 

@@ -4,6 +4,7 @@
 #include "cli/version.hpp"
 #include "cli/file_kind.hpp"
 #include "files/system/durable_file.hpp"
+#include "base/wording.hpp"
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>
@@ -36,7 +37,7 @@ Shard shard_of(const Parsed& parsed) {
 
 Start start_of(const Parsed& parsed) {
     if (parsed.has("resume") && parsed.has("overwrite"))
-        throw InputError("--resume and --overwrite contradict each other. Give one of them.");
+        throw InputError("--resume and --overwrite contradict each other", {}, "Give one of them");
     return parsed.has("resume") ? Start::resume : parsed.has("overwrite") ? Start::overwrite : Start::fresh;
 }
 
@@ -45,7 +46,7 @@ std::vector<Scenario> scenarios_of(const Parsed& parsed) {
     const std::vector<SweepAxis> axes = parsed.sweep();
     const std::size_t count = parsed.arguments.size() * point_count(axes);
     if (!axes.empty() && count > most_swept_scenarios)
-        throw invalid_value("--sweep", joined(parsed.values.at("sweep")),
+        throw invalid_value(as_option("sweep"), joined(parsed.values.at("sweep")),
                             "so many points of so many files are " + std::to_string(count) + " scenarios",
                             "Give at most " + std::to_string(most_swept_scenarios) + " in one study");
     std::vector<Scenario> scenarios;
@@ -58,10 +59,9 @@ std::vector<Scenario> scenarios_of(const Parsed& parsed) {
 void take_stored(const Parsed& parsed, RunRequest& request) {
     for (const char* option : {"set", "sweep", "seed", "keep"})
         if (parsed.has(option))
-            throw InputError(
-                std::string("--") + option +
-                " needs a scenario (without one, the study in the file is resumed as it is). Name one or more "
-                "SCENARIO.ini, or leave it out.");
+            throw InputError(as_option(option) + " needs a scenario",
+                             "without one, the study in the file is resumed as it is",
+                             "Name one or more SCENARIO.ini, or leave it out");
     StudyDefinition stored = stored_definition(request.output);
     request.scenarios = std::move(stored.scenarios);
     request.root_seed = stored.root_seed;
@@ -73,7 +73,7 @@ void take_stored(const Parsed& parsed, RunRequest& request) {
 RunRequest read_request(const Parsed& parsed) {
     const bool is_stored = parsed.arguments.empty() && parsed.has("resume");
     if (parsed.arguments.empty() && !is_stored)
-        throw InputError("no scenario given. Name one or more SCENARIO.ini, or resume with --resume -o FILE.h5.");
+        throw InputError("no scenario given", {}, "Name one or more SCENARIO.ini, or resume with --resume -o FILE.h5");
     RunRequest request;
     request.options.shard = shard_of(parsed);
     request.output = output_of(parsed, request.options.shard);
@@ -90,8 +90,8 @@ RunRequest read_request(const Parsed& parsed) {
     request.keep = parsed.choice("keep") == keep_name(Keep::aggregates) ? Keep::aggregates : Keep::trials;
     request.commit_every = parsed.integer("commit-every", 0, 1, most_trials);
     if (request.options.shard.count > 1 && !request.goals.empty())
-        throw InputError("--until and --shard contradict each other (a shard cannot tell what all of them have). Give "
-                         "one of them.");
+        throw InputError("--until and --shard contradict each other", "a shard cannot tell what all of them have",
+                         "Give one of them");
     for (const std::string& path : parsed.arguments) check_kind(path, {FileKind::scenario});
     if (is_stored) take_stored(parsed, request);
     else request.scenarios = scenarios_of(parsed);

@@ -5,6 +5,7 @@
 #include "cli/version.hpp"
 
 #include "base/program_name.hpp"
+#include "base/wording.hpp"
 #include <credence/error.hpp>
 #include <credence/report.hpp>
 #include <credence/detail/store.hpp>
@@ -121,7 +122,7 @@ std::string resuming(std::string command_line, const Shard& shard) {
         if (const std::size_t at = command_line.find(before + "auto"); at != std::string::npos)
             command_line.replace(at + before.size(), 4,
                                  std::to_string(shard.index) + "/" + std::to_string(shard.count));
-    return command_line.find(resume) == std::string::npos ? command_line + resume : command_line;
+    return wording().resumption(command_line.find(resume) == std::string::npos ? command_line + resume : command_line);
 }
 
 int stopped(const StoredRun& stored, const RunRequest& request, const std::string& command_line) {
@@ -166,9 +167,11 @@ Work keep(StoredRun& stored, const RunRequest& request, const std::string& comma
         stored.keeps_something();  // or its journal is removed
         throw;
     } catch (const Failure& failure) {
-        if (!stored.keeps_something()) throw Failure(failure.what() + std::string(" Nothing had been committed."));
-        throw Failure(failure.what() + std::string(" What was committed is kept, and this resumes the run: ") +
-                      resuming(command_line, request.options.shard));
+        Complaint complaint = failure.complaint();
+        complaint.remedy += stored.keeps_something() ? ". What was committed is kept, and this resumes the run: `" +
+                                                           resuming(command_line, request.options.shard) + "`"
+                                                     : ". Nothing had been committed";
+        throw Failure(complaint);
     }
 }
 
@@ -185,7 +188,8 @@ int run(const Parsed& parsed, const std::string& command_line) {
     const std::int64_t there = least_trials(stored.study());
     if (request.trials_given && request.goals.empty() && there > request.options.trials)
         say(program_name() + " run: note: " + printable(request.output) + " has " + std::to_string(there) +
-            " trials of each scenario already, more than --trials " + std::to_string(request.options.trials) + ".\n");
+            " trials of each scenario already, more than " +
+            as_option("trials", std::to_string(request.options.trials)) + ".\n");
     const Work work = keep(stored, request, command_line);
     if (Interrupt::came() && !stored.study().complete) return stopped(stored, request, command_line);
     if (work.last_analysis && !work.last_analysis->met)

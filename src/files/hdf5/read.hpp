@@ -129,8 +129,9 @@ auto translated(const std::string& path, const std::string& usual_remedy, Read r
         const QuietErrors quiet;
         return read();
     } catch (const PlacedError& error) {
-        const std::string& remedy = error.remedy().empty() ? usual_remedy : error.remedy();
-        throw InputError(path + ": " + error.what() + ". " + remedy + ".");
+        Complaint complaint = error.complaint();
+        if (complaint.remedy.empty()) complaint.remedy = usual_remedy;
+        throw InputError(complaint).at(path);
     }
 }
 

@@ -62,7 +62,8 @@ void Journal::read_values(std::int64_t position, ColumnType type, double* values
     try {
         get_values(from, type, values, static_cast<std::size_t>(count));
     } catch (const BadBytes& bad) {
-        throw InputError(file_.path() + ": is damaged: holds " + bad.what() + ". Remove it and run the study again.");
+        throw InputError(std::string("is damaged: holds ") + bad.what(), {}, "Remove it and run the study again")
+            .at(file_.path());
     }
 }
 

@@ -19,7 +19,7 @@ namespace {
 struct stat status_of(const Descriptor& file, const std::string& path) {
     struct stat status {};
     if (fstat(file.get(), &status) != 0)
-        throw InputError(path + ": cannot be read (" + words_for(errno) + "). Check the disk.");
+        throw InputError("cannot be read", words_for(errno), "Check the disk").at(path);
     return status;
 }
 
@@ -27,7 +27,8 @@ struct stat status_of(const Descriptor& file, const std::string& path) {
 
 JournalBytes::JournalBytes(std::string path, Descriptor file) : path_(std::move(path)), file_(std::move(file)) {
     const struct stat status = status_of(file_, path_);
-    if (!S_ISREG(status.st_mode)) throw InputError(path_ + ": is not a regular file. Remove it, or give another name.");
+    if (!S_ISREG(status.st_mode))
+        throw InputError("is not a regular file", {}, "Remove it, or give another name").at(path_);
     size_ = status.st_size;
 }
 
@@ -35,8 +36,7 @@ std::optional<JournalBytes> JournalBytes::open(const std::string& path) {
     // Without O_NONBLOCK, opening a pipe would wait for its other end.
     Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
     if (file.get() < 0 && errno == ENOENT) return std::nullopt;
-    if (file.get() < 0)
-        throw InputError(path + ": cannot be read (" + words_for(errno) + "). Check its permissions.");
+    if (file.get() < 0) throw InputError("cannot be read", words_for(errno), "Check its permissions").at(path);
     return JournalBytes(path, std::move(file));
 }
 
@@ -65,8 +65,8 @@ void JournalBytes::read(std::int64_t position, void* bytes, std::size_t size) co
         const ssize_t got = pread(file_.get(), to, size, static_cast<off_t>(position));
         if (got < 0 && errno == EINTR) continue;
         if (got <= 0)
-            throw InputError(path_ + ": cannot be read (" + (got < 0 ? words_for(errno) : "it ends too early") +
-                             "). Check the disk.");
+            throw InputError("cannot be read", got < 0 ? words_for(errno) : "it ends too early", "Check the disk")
+                .at(path_);
         to += got;
         position += got;
         size -= static_cast<std::size_t>(got);
@@ -75,8 +75,10 @@ void JournalBytes::read(std::int64_t position, void* bytes, std::size_t size) co
 
 void JournalFile::append(const std::vector<std::string>& pieces) {
     if (const std::int64_t there = status_of(file_, path_).st_size; there != size_)
-        throw Failure("cannot write " + path_ + " (another program changed it: it has " + std::to_string(there) +
-                      " bytes, " + std::to_string(size_) + " were written). Keep other programs from it.");
+        throw Failure("cannot write " + path_,
+                      "another program changed it: it has " + std::to_string(there) + " bytes, " +
+                          std::to_string(size_) + " were written",
+                      "Keep other programs from it");
     const FileSizeSignalIgnored ignored;
     ByteFile file(file_.get());
     std::int64_t end = size_;
@@ -105,7 +107,7 @@ void JournalFile::cut(std::int64_t size) {
 void JournalFile::remove() {
     if (!same_file(file_, path_, path_)) return;
     if (unlink(path_.c_str()) != 0 && errno != ENOENT)
-        throw Failure("cannot remove " + path_ + " (" + words_for(errno) + "). The results are written; remove it.");
+        throw Failure("cannot remove " + path_, words_for(errno), "The results are written; remove it");
     sync_folder(folder_of(path_), path_);
 }
 

@@ -16,7 +16,7 @@ constexpr std::uint32_t journal_version = 9;
 constexpr std::uint32_t largest_header = std::uint32_t{256} << 20;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why, const std::string& remedy) {
-    throw InputError(path + ": " + why + ". " + remedy + ".");
+    throw InputError(why, {}, remedy).at(path);
 }
 
 }  // namespace

@@ -137,11 +137,10 @@ void Journal::check_unchanged() const {
         if (end == file_.size() && seal == seal_) return;
     } catch (const BadBytes&) {  // whole commits, but not of this study
     } catch (const InputError& error) {
-        if (!file_.is_cut()) throw Failure(error.what());  // what the system said
+        if (!file_.is_cut()) throw Failure(error.complaint());  // what the system said
     }
-    throw Failure("cannot read back " + file_.path() +
-                  " (another program changed it, or the disk damaged it). What is " +
-                  "damaged is to be computed again.");
+    throw Failure("cannot read back " + file_.path(), "another program changed it, or the disk damaged it",
+                  "What is damaged is to be computed again");
 }
 
 void Journal::finished(const Study& study) {

@@ -67,7 +67,7 @@ std::optional<FoundCommit> find_record(const JournalBytes& file, std::int64_t po
 }  // namespace
 
 void refuse_damaged(const std::string& path, const std::string& why) {
-    throw InputError(path + ": is damaged: " + why + ". Remove it and run the study again, or give an undamaged copy.");
+    throw InputError("is damaged: " + why, {}, "Remove it and run the study again, or give an undamaged copy").at(path);
 }
 
 std::optional<FoundHeader> find_header(const JournalBytes& file) {

@@ -17,8 +17,8 @@ namespace {
 void check_same_study(const Study& first, const Study& other, const std::vector<std::string>& paths, std::size_t file,
                       std::size_t first_file) {
     const auto refuse = [&](const std::string& why) {
-        throw InputError("cannot merge " + paths[file] + " with " + paths[first_file] +
-                         " (it is not of the same study: " + why + "). Merge the shards of one study.");
+        throw InputError("cannot merge " + paths[file] + " with " + paths[first_file],
+                         "it is not of the same study: " + why, "Merge the shards of one study");
     };
     const std::string difference = difference_of(definition_of(other), definition_of(first));
     if (!difference.empty()) refuse(difference);
@@ -45,9 +45,10 @@ void check_releases(const Study& first, const Study& other, const std::vector<st
                     std::size_t b) {
     for (const std::string& release : other.computed_by)
         if (const std::string unlike = unmixable(first.computed_by, release); !unlike.empty())
-            throw InputError("cannot merge " + paths[b] + " with " + paths[a] + " (" + release +
-                             " computed trials of it, and " + unlike +
-                             " of the other; draws and columns may differ between them). Run one of them again.");
+            throw InputError("cannot merge " + paths[b] + " with " + paths[a],
+                             release + " computed trials of it, and " + unlike +
+                                 " of the other; draws and columns may differ between them",
+                             "Run one of them again");
 }
 
 /// The study that results from files that are added one after the other.
@@ -64,9 +65,10 @@ public:
         for (std::size_t s = 0; s < scenarios_.size(); ++s) {
             const ScenarioResults& results = part.scenarios[s];
             if (const auto shared = scenarios_[s].shared(results.blocks))
-                throw InputError("cannot merge " + paths_[file] + " with " + paths_[shared->file] +
-                                 " (both have block " + std::to_string(shared->block) + " of scenario " +
-                                 results.scenario.name + "). Give files of which no two have the same trials.");
+                throw InputError("cannot merge " + paths_[file] + " with " + paths_[shared->file],
+                                 "both have block " + std::to_string(shared->block) + " of scenario " +
+                                     results.scenario.name,
+                                 "Give files of which no two have the same trials");
             scenarios_[s].add(results, file);
         }
     }

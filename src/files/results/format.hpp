@@ -132,7 +132,8 @@ void write_file(const Output& output, Build build) {
             root.close();
         } catch (const hdf5::Error& error) {
             if (bytes.error() == 0)
-                throw Failure("cannot write " + output.path + " (" + error.what() + "). Free some memory.");
+                throw Failure("cannot write " + output.path,
+                              error.complaint().place + ": " + error.complaint().subject, "Free some memory");
         }
         return bytes.error();
     });

@@ -34,10 +34,10 @@ void refuse_clashing_links(const Study& study) {
         std::vector<std::string> names = arm_links(results);
         std::ranges::sort(names);
         if (const auto twice = std::ranges::adjacent_find(names); twice != names.end())
-            throw InputError("cannot store scenario " + results.scenario.name + " (its world " +
-                             results.scenario.world +
-                             " names columns, groups or components so that two datasets would be " + *twice +
-                             "). Rename one of them in the world.");
+            throw InputError("cannot store scenario " + results.scenario.name,
+                             "its world " + results.scenario.world +
+                                 " names columns, groups or components so that two datasets would be " + *twice,
+                             "Rename one of them in the world");
     }
 }
 

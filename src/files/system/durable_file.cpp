@@ -52,7 +52,7 @@ void write_and_rename(const Output& output, const std::function<int(int descript
 }
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why, const std::string& remedy) {
-    throw InputError("cannot write " + path + " (" + why + "). " + remedy + ".");
+    throw InputError("cannot write " + path, why, remedy);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ std::string remedy_for(int error) {
 }  // namespace
 
 void fail_to_write(const std::string& path, const std::string& why, int error) {
-    throw Failure("cannot write " + path + " (" + why + "). " + remedy_for(error) + ".");
+    throw Failure("cannot write " + path, why, remedy_for(error));
 }
 
 void fail_to_write(const std::string& path, int error) { fail_to_write(path, words_for(error), error); }
@@ -49,7 +49,7 @@ bool leads_nowhere(int error) {
 
 /// The file may be one to read or one to write.
 [[noreturn]] void fail_to_access(const std::string& path, int error) {
-    throw Failure("cannot access " + path + " (" + words_for(error) + "). " + remedy_for_reading(error) + ".");
+    throw Failure("cannot access " + path, words_for(error), remedy_for_reading(error));
 }
 
 }  // namespace
@@ -73,8 +73,7 @@ struct stat status_of(const Descriptor& file, const std::string& target) {
 void lock_for_writing(const Descriptor& file, const std::string& target) {
     // On file systems without locks the file is written unlocked.
     if (flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-        throw InputError("cannot write " + target +
-                         " (another program is writing it). Let it end, or write to another place.");
+        throw InputError("cannot write " + target, "another program is writing it", remedy_for(EWOULDBLOCK));
 }
 
 }  // namespace

@@ -5,17 +5,17 @@
 #include <credence/text.hpp>
 #include <filesystem>
 
+#include "base/wording.hpp"
 #include "report/compare/choice.hpp"
 
 namespace credence {
 
 namespace {
 
-const char* const how_to_write =
-    "Write --arms A,B, such as greedy.ekf,fixed.ekf, or FILE:ARM for an arm of one of several files";
-
 InputError refused(const std::string& text, const std::string& why) {
-    return invalid_value("--arms", text, why, how_to_write);
+    return invalid_value(as_option("arms"), text, why,
+                         "Write " + as_option("arms", "A,B") +
+                             ", such as greedy.ekf,fixed.ekf, or FILE:ARM for an arm of one of several files");
 }
 
 /// Parses `ARM` or `FILE:ARM`; an arm without a file is of the file `own`, and is refused where that is not given.
@@ -31,7 +31,7 @@ ArmChoice read_arm(const std::string& part, const std::string& text, const std::
     const std::vector<std::string> labels = file_labels(paths);
     for (std::size_t file = 0; file < paths.size(); ++file)
         if (name == paths[file] || name == labels[file]) return {file, arm};
-    throw invalid_value("--arms", text, name + " is not one of the files", "The files are " + joined(labels));
+    throw invalid_value(as_option("arms"), text, name + " is not one of the files", "The files are " + joined(labels));
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ ArmsChoice read_arms(const std::string& text, const std::vector<std::string>& pa
     ArmsChoice choice{text, read_arm(parts[0], text, paths, own_a), read_arm(parts[1], text, paths, own_b)};
     for (std::size_t file = 0; file < paths.size(); ++file)
         if (file != choice.a.file && file != choice.b.file)
-            throw invalid_value("--arms", text, paths[file] + " takes no part", "Leave that file out");
+            throw invalid_value(as_option("arms"), text, paths[file] + " takes no part", "Leave that file out");
     return choice;
 }
 

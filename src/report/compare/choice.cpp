@@ -1,6 +1,7 @@
 #include "report/compare/choice.hpp"
 
 #include "base/choice.hpp"
+#include "base/wording.hpp"
 
 #include <algorithm>
 #include <credence/error.hpp>
@@ -36,7 +37,7 @@ const ArmResults* named_arm(const ScenarioResults& results, const std::string& n
     if (meant.size() > 1) {
         std::vector<std::string> names;
         for (const ArmResults* arm : meant) names.push_back(arm->name);
-        throw invalid_value("--arms", choice.text,
+        throw invalid_value(as_option("arms"), choice.text,
                             name + " in scenario " + results.scenario.name + " is " + joined(names, " or "),
                             "Give the arm's whole name");
     }
@@ -66,9 +67,9 @@ public:
             if (pairs_.size() == before) leave_out(results, "no planned arm has one to compare with");
         }
         if (pairs_.empty())
-            throw InputError("nothing to compare in " + files_[0].path +
-                             " (no arm has that of a simpler controller and the same estimator beside it). " +
-                             remedy_of_one() + ": " + contents(files_[0]) + ".");
+            throw InputError("nothing to compare in " + files_[0].path,
+                             "no arm has that of a simpler controller and the same estimator beside it",
+                             remedy_of_one() + ": " + contents(files_[0]));
     }
 
     /// Pairs every arm of a later file with the first file's arm of the same name.
@@ -82,10 +83,10 @@ public:
             if (pairs_.size() == had) leave_out(a, "no arm has the same name in both files");
         });
         if (pairs_.size() == before)
-            throw InputError("cannot compare " + files_[later].path + " with " + files_[0].path +
-                             " (no scenario of the same name has an arm of the same name). Give --arms A,B or other "
-                             "files: " +
-                             contents(files_[0]) + "; " + contents(files_[later]) + ".");
+            throw InputError("cannot compare " + files_[later].path + " with " + files_[0].path,
+                             "no scenario of the same name has an arm of the same name",
+                             "Give " + as_option("arms", "A,B") + " or other files: " + contents(files_[0]) + "; " +
+                                 contents(files_[later]));
     }
 
     void chosen(const ArmsChoice& choice) {
@@ -93,7 +94,7 @@ public:
             const ArmResults* a = named_arm(in_a, choice.a.arm, choice);
             const ArmResults* b = named_arm(in_b, choice.b.arm, choice);
             if (a != nullptr && a == b)
-                throw invalid_value("--arms", choice.text, "both are the same arm", "Give two arms");
+                throw invalid_value(as_option("arms"), choice.text, "both are the same arm", "Give two arms");
             if (a != nullptr && b != nullptr)
                 add(choice.a.file, in_a, *a, choice.b.file, in_b, *b);
             else
@@ -118,7 +119,8 @@ private:
     std::string remedy_of_one() const {
         for (const ScenarioResults& results : files_[0].study.scenarios)
             if (results.arms.size() > 1)
-                return "Choose two arms, such as --arms " + results.arms[0].name + "," + results.arms[1].name;
+                return "Choose two arms, such as " +
+                       as_option("arms", results.arms[0].name + "," + results.arms[1].name);
         return "Give a further file to compare its arm with";
     }
 
@@ -153,7 +155,7 @@ private:
         }
         std::string there = contents(files_[choice.a.file]);
         if (choice.a.file != choice.b.file) there += "; " + contents(files_[choice.b.file]);
-        throw invalid_value("--arms", choice.text, why, nearest + "The arms there are: " + there);
+        throw invalid_value(as_option("arms"), choice.text, why, nearest + "The arms there are: " + there);
     }
 
     const std::vector<StudyFile>& files_;

@@ -30,9 +30,9 @@ ComparedSide side_of(const ComparedArm& compared, const StudyFile& file, const s
 /// Arms of different files. Two shards of one study, for example, have no trial in common.
 void require_common_trials(const ChosenPair& chosen, const CommonTrials& common) {
     if (common.count() > 0 || chosen.a.results.trials == 0 || chosen.b.results.trials == 0) return;
-    throw InputError(chosen.file_a.path + " and " + chosen.file_b.path + ": have no trial of " +
-                     printable(chosen.a.results.scenario.name) +
-                     " in common. Merge the shards of each study, or compare the same shard of both.");
+    throw InputError("have no trial of " + printable(chosen.a.results.scenario.name) + " in common", {},
+                     "Merge the shards of each study, or compare the same shard of both")
+        .at(chosen.file_a.path + " and " + chosen.file_b.path);
 }
 
 /// The estimator of an arm, such as `ekf` of `greedy.ekf`; all of a name without a controller.

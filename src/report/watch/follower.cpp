@@ -28,8 +28,9 @@ void JournalFollower::read_file(const std::string& path, const StudyDefinition& 
     const Study stored = read_results(path, 0).study;
     const std::string difference = difference_of(definition_of(stored), expected);
     if (!difference.empty())
-        throw InputError(path + ": is not the file that its journal extends (" + difference +
-                         "). Put that back, or remove the journal.");
+        throw InputError("is not the file that its journal extends", difference,
+                         "Put that back, or remove the journal")
+            .at(path);
     for (std::size_t s = 0; s < followed_.size(); ++s) {
         ScenarioResults& results = study_.scenarios[s];
         const ScenarioResults& from = stored.scenarios[s];

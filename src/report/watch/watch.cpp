@@ -3,7 +3,7 @@
 #include <credence/error.hpp>
 #include "files/stored_run.hpp"
 
-#include "base/program_name.hpp"
+#include "base/wording.hpp"
 #include "report/watch/follower.hpp"
 
 #include <algorithm>
@@ -143,9 +143,8 @@ std::optional<Snapshot> RunWatch::journal_snapshot() {
 Snapshot RunWatch::results_snapshot() const {
     std::error_code trouble;
     if (!std::filesystem::exists(path_, trouble) && !trouble)
-        throw InputError("nothing to watch: neither " + path_ + " nor " + journal_path_of(path_) +
-                         " is there. Check the name, or begin with `" + program_name() + " run SCENARIO.ini -o " +
-                         path_ + "`.");
+        throw InputError("nothing to watch: neither " + path_ + " nor " + journal_path_of(path_) + " is there", {},
+                         "Check the name, or begin with " + as_command({"run", "SCENARIO.ini", "-o", path_}));
     const Study study = read_results(path_, 0).study;
     Shard shard;
     if (!study.complete && !study.scenarios.empty()) {

@@ -85,16 +85,16 @@ void add_sensor_keys(Keys& keys) {
 }
 
 void add_noise_keys(Keys& keys) {
-    keys.push_back(real_key("noise.heading", "sigma_head of a step (rad)", from(0),
-                            [](auto& s) -> auto& { return s.noise.heading; }));
+    keys.push_back(real_key("noise.heading", "sigma_head of a step", from(0),
+                            [](auto& s) -> auto& { return s.noise.heading; }, "rad"));
     keys.push_back(real_key("noise.odometry", "sigma_odom of a step and axis (length)", from(0),
                             [](auto& s) -> auto& { return s.noise.odometry; }));
     keys.push_back(real_key("noise.walk", "sigma_walk of a feature, step and axis (length)", from(0),
                             [](auto& s) -> auto& { return s.noise.walk; }));
     keys.push_back(real_key("noise.deformation", "sigma_def of a feature and axis; also the edges' (length)", from(0),
                             [](auto& s) -> auto& { return s.noise.deformation; }));
-    keys.push_back(real_key("noise.initial_heading", "sigma of the first heading, known to the filter (rad)", from(0),
-                            [](auto& s) -> auto& { return s.noise.initial_heading; }));
+    keys.push_back(real_key("noise.initial_heading", "sigma of the first heading, known to the filter", from(0),
+                            [](auto& s) -> auto& { return s.noise.initial_heading; }, "rad"));
     keys.push_back(real_key("noise.initial_position", "sigma of the first position, known to the filter (length)",
                             from(0), [](auto& s) -> auto& { return s.noise.initial_position; }));
     add_later(keys, real_key(

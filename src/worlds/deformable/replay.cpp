@@ -99,8 +99,7 @@ Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, co
 
 void check_covers(const NoiseRecord& record, const DeformableSettings& scenario, const std::string& file) {
     const auto refuse = [&](const std::string& why, const std::string& remedy) {
-        throw InputError("noise record " + file + " does not fit scenario " + scenario.name + " (" + why + "). " +
-                         remedy + ".");
+        throw InputError("noise record " + file + " does not fit scenario " + scenario.name, why, remedy);
     };
     const int features = feature_count(scenario);
     const int edges = static_cast<int>(edge_list(scenario).size());

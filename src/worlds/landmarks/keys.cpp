@@ -40,8 +40,9 @@ std::vector<LandmarkKey> all_keys() {
          [](auto& s) -> auto& { return s.sensor.range_max; });
     real("sensor.sigma", "noise of each axis of a relative position (length)", above(0),
          [](auto& s) -> auto& { return s.sensor.sigma; });
-    real("noise.heading", "sigma_head of the turn that the filter is given, a step (rad)", above(0),
-         [](auto& s) -> auto& { return s.noise.heading; });
+    keys.push_back(real_key<LandmarkSettings>("noise.heading",
+                                              "sigma_head of the turn that the filter is given, a step", above(0),
+                                              [](auto& s) -> auto& { return s.noise.heading; }, "rad"));
     real("noise.odometry", "sigma_odom of the move that the filter is given, a step and axis (length)", above(0),
          [](auto& s) -> auto& { return s.noise.odometry; });
     keys.push_back({"arms.estimators", "any of " + joined(estimators_with_heading()),

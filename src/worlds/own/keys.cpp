@@ -28,18 +28,13 @@ std::size_t own_choice(const std::string& key, const std::string& text, const st
 }
 
 std::vector<double> own_reals(const std::string& key, const std::string& text, double low, double high) {
-    std::vector<double> values;
-    for (const std::string& part : list_parts(key, text)) values.push_back(own_real(key, part, low, high));
+    std::vector<double> values = parse_reals(key, text, between(low, high));
     if (values.empty()) throw invalid_value(key, text, "it is empty", "Give at least one number");
     return values;
 }
 
 std::string own_text(double value) { return to_text(value); }
 
-std::string own_text(const std::vector<double>& values) {
-    std::vector<std::string> parts;
-    for (const double value : values) parts.push_back(to_text(value));
-    return joined(parts);
-}
+std::string own_text(const std::vector<double>& values) { return reals_text(values); }
 
 }  // namespace credence

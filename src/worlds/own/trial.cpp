@@ -23,7 +23,7 @@ bool is_word(const std::string& text) {
 }
 
 InputError refused(const Scenario& scenario, const std::string& why, const std::string& remedy) {
-    return InputError("cannot use world " + printable(scenario.world) + " (" + printable(why) + "). " + remedy + ".");
+    return InputError("cannot use world " + printable(scenario.world), printable(why), remedy);
 }
 
 /// `what` is listed: the names must be there, be names, and differ.

@@ -24,9 +24,11 @@ template <class Function>
 bool call_world(const LanePack& pack, int first, int trials, const Function& function) {
     const auto failure = [&](const std::string& what) {
         const std::int64_t trial = pack.first_trial + first;
-        return Failure("cannot run world " + *pack.world + " (" + (trials == 1 ? "trial " : "one of trials ") +
-                       std::to_string(trial) + (trials == 1 ? "" : " to " + std::to_string(trial + trials - 1)) +
-                       " of " + *pack.arm_name + " threw " + what + "). Mend its function run.");
+        return Failure("cannot run world " + *pack.world,
+                       (trials == 1 ? "trial " : "one of trials ") + std::to_string(trial) +
+                           (trials == 1 ? "" : " to " + std::to_string(trial + trials - 1)) + " of " + *pack.arm_name +
+                           " threw " + what,
+                       "Mend its function run");
     };
     try {
         function();

@@ -114,10 +114,10 @@ public:
         for (std::size_t arm = 0; arm < arms_.size(); ++arm) {
             const auto first = run_arm(*this, columns_, arm, root_seed, 0, 1, memory);
             if (!same_trial(first, run_arm(*this, columns_, arm, root_seed, 0, 1, memory)))
-                throw InputError("cannot run world " + printable(world_) + " (trial 0 of " + printable(arms_[arm]) +
-                                 " gives other numbers a second time: of a clock, of another generator, or of what is "
-                                 "kept from trial to trial). Draw by trial.normal and trial.uniform alone, and keep "
-                                 "nothing.");
+                throw InputError("cannot run world " + printable(world_),
+                                 "trial 0 of " + printable(arms_[arm]) + " gives other numbers a second time: of a "
+                                 "clock, of another generator, or of what is kept from trial to trial",
+                                 "Draw by trial.normal and trial.uniform alone, and keep nothing");
         }
     }
 
