@@ -88,7 +88,7 @@ private:
             inverse_sigma[i] = Real(1) / sqrt(P.entry[i][i]);
             standardised[i] = error[i] * inverse_sigma[i] * inverse_root;
         }
-        details_->add_moments([&](int i, int j) { return P.entry[i][j]; }, standardised, inverse_sigma);
+        add_moments(n, [&](int i, int j) { return P.entry[i][j]; }, standardised, inverse_sigma, details_->moments);
     }
 
     /// Takes the rows of step k in, one pair after the other, as the update does, on a copy.

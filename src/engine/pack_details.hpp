@@ -67,6 +67,20 @@ private:
     Real sum_[largest_lag], count_[largest_lag];  ///< [lag - 1]
 };
 
+/// Adds a step to moments [moment_count, those of the groups' NEES left out]. `P(i, j)`, i <= j, covariance [n, n];
+/// `standardised` e_j/sigma_j [n]; `inverse_sigma` 1/sqrt(P_jj) [n].
+template <class Real, class Covariance>
+[[gnu::noinline]] void add_moments(int n, const Covariance& P, const Real* standardised, const Real* inverse_sigma,
+                                   Real* moments) {
+    for (int j = 0; j < n; ++j) moments[j] = moments[j] + standardised[j];
+    Real *products = moments + n, *correlations = products + n * (n + 1) / 2;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j <= i; ++j, ++products, ++correlations) {
+            *products = fma(standardised[i], standardised[j], *products);
+            *correlations = fma(P(j, i) * inverse_sigma[i], inverse_sigma[j], *correlations);
+        }
+}
+
 /// Stores a pack's numbers [cells] in their places in [cells, octets, 8].
 template <class Real>
 void copy_out(const Real* from, int cells, int trial, const Batch& batch, double* to) {
@@ -97,19 +111,6 @@ public:
     void start() {
         if (on) products.start(rows_, history_);
         for (std::size_t i = 0; moments != nullptr && i < moment_cells(problem_); ++i) moments[i] = Real(0);
-    }
-    /// Adds a step. `P(i, j)`, i <= j, covariance [n, n]; `standardised` e_j/sigma_j [n]; `inverse_sigma` 1/sqrt(P_jj)
-    /// [n].
-    template <class Covariance>
-    [[gnu::noinline]] void add_moments(const Covariance& P, const Real* standardised, const Real* inverse_sigma) {
-        const int n = problem_.state_size;
-        for (int j = 0; j < n; ++j) moments[j] = moments[j] + standardised[j];
-        Real *next = moments + n, *correlations = next + n * (n + 1) / 2;
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j <= i; ++j, ++next, ++correlations) {
-                *next = fma(standardised[i], standardised[j], *next);
-                *correlations = fma(P(j, i) * inverse_sigma[i], inverse_sigma[j], *correlations);
-            }
     }
     /// Stores what there is of the trials from `trial` on: of moments, NEES and standardised errors as means over the
     /// steps.

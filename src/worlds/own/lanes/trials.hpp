@@ -202,7 +202,8 @@ private:
             standardised[j] = *series(view_.standardised_error + j);
             inverse_sigma[j] = Real(1) / sqrt(P.at(j, j));
         }
-        details_.add_moments([&](int i, int j) { return P.at(j, i); }, standardised, inverse_sigma);
+        add_moments(state_size, [&](int i, int j) { return P.at(j, i); }, standardised, inverse_sigma,
+                    details_.moments);
     }
 
     void evaluate_innovation(const LaneStep& step) {
