@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import functools
 import os
 from collections.abc import Iterator
 from typing import Any, BinaryIO, NamedTuple
@@ -11,6 +10,8 @@ from typing import Any, BinaryIO, NamedTuple
 import h5py
 import numpy as np
 import numpy.typing as npt
+
+from credence._results import cached
 
 FloatArray = npt.NDArray[np.float64]
 Array = npt.NDArray[Any]
@@ -175,7 +176,7 @@ class Variables(Group):
             raise KeyError(self._missing(name))
         return described(variable)
 
-    @functools.cached_property
+    @cached
     def dimensions(self) -> dict[str, list[str]]:
         """{variable: names of its dimensions}, of all variables that are not coordinates themselves."""
         variables = [(name, variable) for name, variable in self.group.items() if isinstance(variable, h5py.Dataset)]

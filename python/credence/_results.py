@@ -3,12 +3,32 @@
 from __future__ import annotations
 
 import abc
-import functools
 import json
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
     from credence import _core
+
+T = TypeVar("T")
+
+
+class cached(Generic[T]):  # it is used as a word, as property is
+    """A property that is computed once, as `functools.cached_property`. That one holds a lock before Python 3.12, for
+    which the child of a fork in the middle of it would wait forever."""
+
+    def __init__(self, work: Callable[[Any], T]) -> None:
+        self._work = work
+        self.__doc__ = work.__doc__
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    def __get__(self, instance: Any, owner: type | None = None) -> T:
+        if instance is None:
+            return self  # type: ignore[return-value]
+        value = instance.__dict__[self._name] = self._work(instance)
+        return value
 
 
 class Sources(NamedTuple):
@@ -52,7 +72,7 @@ class Printed:
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), ({form: self._in(form) for form in ("text", "json", "html")},)
 
-    @functools.cached_property
+    @cached
     def json(self) -> list[dict[str, Any]]:
         found: list[dict[str, Any]] = json.loads(self._in("json"))
         return found

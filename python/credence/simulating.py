@@ -32,7 +32,7 @@ from credence._calls import framed, note, progress_bar
 from credence._errors import invalid, printable, wrong
 from credence._outputs import check_output, goes_with
 from credence._record import Run
-from credence._results import Results, Sources
+from credence._results import Results, Sources, cached
 from credence._trial_files import Trials, get_text, write_records
 from credence._trials import BATCH, Arms, Array, Failure, Frame, Work, generator, is_frame, run_chunk, same
 from credence._workers import TRIES, Workers
@@ -224,7 +224,7 @@ class SimulatedArm(Results):
         with h5py.File(self._files.record, "r") as file:
             yield file if self._files.arms is None else file[self.name]
 
-    @functools.cached_property
+    @cached
     def study(self) -> Study:
         """Its columns and series, as those of a study of one arm that `credence.run` gives."""
         from credence.study import of_records
@@ -234,7 +234,7 @@ class SimulatedArm(Results):
     def sources(self) -> Sources:
         return Sources(records={self.name: self.path})
 
-    @functools.cached_property
+    @cached
     def results(self) -> Arm:
         """Its columns and series, as those of an arm of a study."""
         return self.study.arms[0]
@@ -326,7 +326,7 @@ class Simulation(Results):
     def __getitem__(self, name: str) -> SimulatedArm:
         return self.arm(name)
 
-    @functools.cached_property
+    @cached
     def study(self) -> Study:
         """The columns and series of all arms, as those of a study that `credence.run` gives."""
         from credence.study import of_records

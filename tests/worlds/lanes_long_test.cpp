@@ -21,6 +21,7 @@ namespace credence::test::lanes_long_test {
 namespace {
 
 const bool added = [] {
+    add_own_world<Tracker>();
     add_own_world<Troubled>();
     add_own_world<WideOf<9>>();
     add_own_world<WideOf<48>>();
