@@ -62,7 +62,7 @@ struct Said {
 /// Whether Python is ending, and this thread's work is to end.
 bool must_end();
 
-/// Sets the errors of the package as those of the module, and Python's words: arguments, and calls.
+/// Makes errors those of the package, in Python's words: arguments, and calls.
 void bind_errors(nb::module_& module);
 
 /// Lets a fork wait for the turn, so that the child finds nothing half done, and the end of Python for the last one.

@@ -72,8 +72,6 @@ void raise(const char* name, const ComplaintError& error) {
 
 void bind_errors(nb::module_& module) {
     wording() = python_wording;
-    for (const char* name : {"InputError", "Failure"})
-        module.attr(name) = nb::module_::import_("credence._errors").attr(name);
     nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
         try {
             std::rethrow_exception(thrown);

@@ -60,8 +60,8 @@ Said judgement(const std::string& name, const nb::dict& options, const Listener&
         if (listener) (*listener)(now.done, now.total);
     };
     return alone([&] {
-        const Report report = make_record_report(read(progress, segments), name, limits);
-        return Said{[report, name](const std::string& format) { return cli::rendered(report, format, name, {}); }};
+        return Said{[report = make_record_report(read(progress, segments), name, limits), name](
+                        const std::string& format) { return cli::rendered(report, format, name, {}); }};
     });
 }
 

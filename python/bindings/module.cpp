@@ -81,8 +81,9 @@ void say(Said* said, const std::string& name, const std::vector<std::string>& ar
     const cli::Parsed parsed = cli::parsed_of(command_of(name), arguments, values_of(command_of(name), options));
     new (said) Said{alone([&]() -> cli::Rendering {
         if (name == "compare") return cli::compared(parsed);
-        const cli::Reported of = name == "report" ? cli::reported(parsed) : cli::judged(parsed);
-        return [of](const std::string& format) { return cli::rendered(of.report, format, of.path, of.run); };
+        return [of = name == "report" ? cli::reported(parsed) : cli::judged(parsed)](const std::string& format) {
+            return cli::rendered(of.report, format, of.path, of.run);
+        };
     })};
 }
 

@@ -1,4 +1,4 @@
-"""What all calls of the compiled module share: their progress, and errors that name arguments."""
+"""What all calls of the compiled module share: their progress, and what they say."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from credence import _core
+from credence._errors import Failure
 
 
 def note(message: str) -> None:
@@ -55,7 +55,7 @@ def say(text: str) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python writes it once more at its end
         if isinstance(error, BrokenPipeError):
             sys.exit(128 + signal.SIGPIPE)
-        raise _core.Failure("cannot write to the standard output.") from None
+        raise Failure("cannot write to the standard output.") from None
 
 
 _speaker = ""  # the command whose process this is

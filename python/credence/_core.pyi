@@ -4,9 +4,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from credence._errors import Failure as Failure
-from credence._errors import InputError as InputError
-
 class Said:
     def __init__(self, name: str, arguments: Sequence[str], options: Mapping[str, object]) -> None: ...
     def in_format(self, format: str) -> str: ...

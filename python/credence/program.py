@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from credence import _core
 from credence import _doors as doors
 from credence._calls import note, progress_bar
-from credence._errors import invalid, wrong
+from credence._errors import Failure, InputError, invalid, wrong
 from credence._names import not_utf8
 from credence._outputs import goes_with
 from credence._results import Printed, Results, Sources
@@ -119,7 +119,7 @@ def _path_of(study: Results | File) -> str:
         return os.fspath(study)
     sources = study.sources()
     if sources.records:
-        raise _core.InputError(
+        raise InputError(
             "cannot use records here (`run` did not make them, so no trial can be run again). Call simulate again, "
             "with resume=True."
         )
@@ -137,7 +137,7 @@ def _finish(
         code, _, err = _command(name, arguments, {**options, "output": output, "quiet": True}, progress)
         study = open_study(output)
     except BaseException as error:
-        has_work = isinstance(error, _core.Failure) and folder is not None and os.listdir(folder)
+        has_work = isinstance(error, Failure) and folder is not None and os.listdir(folder)
         if folder is not None and not has_work:
             shutil.rmtree(folder)
         raise
@@ -230,16 +230,16 @@ def run(
     options |= settings_of(set, sweep)
     if executor is not None:
         if until is not None:
-            raise _core.InputError("cannot stop shards by until (none of them has all trials). Leave executor out.")
+            raise InputError("cannot stop shards by until (none of them has all trials). Leave executor out.")
         if output is not None and os.path.exists(output) and not overwrite:
-            raise _core.InputError(f"cannot write {output} (it exists). Say overwrite=True, or name another.")
+            raise InputError(f"cannot write {output} (it exists). Say overwrite=True, or name another.")
         options["threads"] = threads or 1
         from credence._shards import shards_of
 
         with scenario_files(path_or_text) as paths, shards_of(paths, options, executor, shards, progress) as parts:
             return merge(parts, output, overwrite=overwrite, progress=False)
     elif shards is not None:
-        raise _core.InputError("shards: say nothing without an executor. Give both, or leave it out.")
+        raise InputError("shards: say nothing without an executor. Give both, or leave it out.")
     options |= {"overwrite": overwrite, "until": _goals(until)}
     with scenario_files(path_or_text) as paths:
         return _written("run", paths, options, output, progress)
@@ -443,7 +443,7 @@ def _compared_records(given: Sequence[dict[str, str]], arms: str | tuple[str, st
     common = [name for name in given[0] if all(name in records for records in given)]
     if len(common) != 1:
         names = ", ".join(common or given[0])
-        raise _core.InputError(f"cannot compare all arms of several simulations ({names}). Give arms=(A, B), A of the "
+        raise InputError(f"cannot compare all arms of several simulations ({names}). Give arms=(A, B), A of the "
                                "first and B of the second.")
     return [records[common[0]] for records in given]
 
@@ -477,7 +477,7 @@ def compare(
     if failed is None:
         failed = next((one.limit for one in studies if isinstance(one, Results)), None)
     if of_records and len(of_records) < len(studies):
-        raise _core.InputError("cannot compare records with results files. Give studies of one kind.")
+        raise InputError("cannot compare records with results files. Give studies of one kind.")
     if of_records:
         return Comparison(_said("compare", _compared_records(of_records, arms), {"failed": failed}))
     both = arms if arms is None or isinstance(arms, str) else ",".join(arms)

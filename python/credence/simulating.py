@@ -26,10 +26,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from credence import _core
+from credence import _core, _errors
 from credence import _doors as doors
 from credence._calls import framed, note, progress_bar
-from credence._errors import invalid, printable, wrong
+from credence._errors import InputError, invalid, printable, wrong
 from credence._outputs import check_output, goes_with
 from credence._record import Run
 from credence._results import Results, Sources, cached
@@ -149,7 +149,7 @@ class _Files:
         is_kept = trials.exists()
         if resume and not is_kept and os.path.lexists(output):
             why = f"cannot resume {os.fspath(output)} (its trials are not beside it, in {trials.name})"
-            raise _core.InputError(f"{why}. Name another output.")
+            raise InputError(f"{why}. Name another output.")
         remedy = "Name another, or say resume=True to resume from the trials beside it" if is_kept else "Name another"
         if is_kept:
             check_output(trials, resume, remedy)
@@ -166,7 +166,7 @@ class _Files:
             found = get_text(file.attrs, "study")
         if found != study:
             why = f"cannot write {self.record} (it is no record of the trials in {self.trials.name})"
-            raise _core.InputError(f"{why}. Move it away, or name another output.")
+            raise InputError(f"{why}. Move it away, or name another output.")
 
     def remove_temporary(self) -> None:
         if self._remove is not None:
@@ -497,7 +497,7 @@ class _Engine:
         """Refuse what cannot be judged as soon as trial 0 is there, and note where it does not repeat itself."""
         self._checked = True
         for arm, said in frame.header.get("refused", {}).items():
-            raise _core.InputError(f"trial 0 of {arm}: {said}")
+            raise InputError(f"trial 0 of {arm}: {said}")
         for segment, arrays in frame.segments():
             if segment["trials"][0] != 0:
                 continue
@@ -506,7 +506,7 @@ class _Engine:
                 if f"column/{goal.metric}" not in arrays and not (goal.metric == "nees_ratio" and has_nees):
                     known = [name[7:] for name in arrays if name.startswith("column/")] + ["nees_ratio"] * has_nees
                     why = f"until: the trials have no number {printable(goal.metric)}"
-                    raise _core.InputError(f"{why}. Take one of {', '.join(known) or 'columns that Run is given'}.")
+                    raise InputError(f"{why}. Take one of {', '.join(known) or 'columns that Run is given'}.")
         for arm, is_same in frame.header["repeats"].items():
             if not is_same:
                 self.is_repeatable = False
@@ -527,7 +527,7 @@ class _Engine:
                     first[trial] = b"".join(array[i].tobytes() for array in leading)
             if len(first) == needed > 1 and len(set(first.values())) == 1:
                 why = f"the first {needed} trials of {segment['arm']} have the same errors, to the last bit"
-                raise _core.InputError(f"{why}: the function does not use rng. Draw every random number from rng.")
+                raise InputError(f"{why}: the function does not use rng. Draw every random number from rng.")
 
     def _compare_with_what_is_kept(self, workers: Workers[Payload]) -> None:
         """Run a trial once more, and refuse to add to trials that another function or another library made.
@@ -546,7 +546,7 @@ class _Engine:
                 if data is not None and not same(kept.data, data, arm, [number]):
                     why = f"trial {number} of {arm} gives other numbers than those that are kept"
                     remedy = "Take the function and the libraries that made them, or another output"
-                    raise _core.InputError(f"{self.trials.path}: {why}. {remedy}.")
+                    raise InputError(f"{self.trials.path}: {why}. {remedy}.")
 
     def _count_failures(self, failures: list[Failure]) -> None:
         """Stop where every one of the first trials of an arm failed."""
@@ -556,7 +556,7 @@ class _Engine:
                 self._failed_first[one.arm].add(one.trial)
                 if len(self._failed_first[one.arm]) == needed:
                     said = f"the first {needed} trials of {one.arm} all failed; this is trial {one.trial}: {one.reason}"
-                    raise _core.Failure(f"{said}\n{one.traceback}".rstrip("\n"))
+                    raise _errors.Failure(f"{said}\n{one.traceback}".rstrip("\n"))
 
     def _are_met(self, count: int, alpha: float) -> bool:
         values: dict[tuple[str, str], tuple[Array, Array]] = {}
@@ -693,7 +693,7 @@ def simulate(
     if goals:
         doors.needed("scipy.stats", "scipy", "stop at a precision")
     if output is None and resume:
-        raise _core.InputError("cannot resume (there is no output). Name the output of the study that is resumed.")
+        raise InputError("cannot resume (there is no output). Name the output of the study that is resumed.")
     files = _Files(output, arms, resume)
     try:
         return _simulated(Work(run, plan, seed, int(batch), timeout), executor, trials, goals, failed, progress, files)

@@ -168,9 +168,11 @@ Work keep(StoredRun& stored, const RunRequest& request, const std::string& comma
         throw;
     } catch (const Failure& failure) {
         Complaint complaint = failure.complaint();
-        complaint.remedy += stored.keeps_something() ? ". What was committed is kept, and this resumes the run: `" +
-                                                           resuming(command_line, request.options.shard) + "`"
-                                                     : ". Nothing had been committed";
+        if (!complaint.remedy.empty() && !complaint.remedy.ends_with('.')) complaint.remedy += ".";
+        complaint.remedy += std::string(complaint.remedy.empty() ? "" : " ") +
+                            (stored.keeps_something() ? "What was committed is kept, and this resumes the run: `" +
+                                                            resuming(command_line, request.options.shard) + "`"
+                                                      : "Nothing had been committed");
         throw Failure(complaint);
     }
 }
