@@ -6,10 +6,9 @@
 
 #include "filters.hpp"
 
-#include "record/totals.hpp"
 
 #include <credence/consistency.hpp>
-#include <credence/evidence.hpp>
+#include <credence/record.hpp>
 #include <credence/statistics.hpp>
 
 #include <boost/math/distributions/binomial.hpp>
@@ -18,7 +17,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -28,28 +26,30 @@ namespace {
 
 /// The verdict on one study of a filter.
 Consistency judged(const Filter& filter, std::uint64_t seed, int trials) {
-    RecordShape shape;
-    shape.trials = trials;
-    shape.steps = shape.longest = static_cast<int>(filter.covariance.size());
-    shape.n = filter.groups.front().count;
-    shape.m = filter.rows;
-    shape.groups = filter.groups;
-    shape.covariance_epsilon = shape.innovation_epsilon = std::numeric_limits<double>::epsilon();
-    const Eigen::MatrixXd innovation_covariance = Eigen::MatrixXd::Identity(filter.rows, filter.rows);
-    RecordTotals totals(shape, "study", LostTrials::set_aside);
+    const auto steps = static_cast<std::int64_t>(filter.covariance.size());
+    const std::int64_t n = filter.groups.front().count, m = filter.rows;
+    std::vector<double> errors, covariances, innovations;
+    for (const Eigen::MatrixXd& P : filter.covariance) covariances.insert(covariances.end(), P.data(), P.data() + n * n);
     for (std::int64_t i = 0; i < trials; ++i) {
         const Trial trial = filter.trial(Draws(seed, i));
-        for (int k = 0; k < shape.steps; ++k) {
-            RecordStep step{i, k, trial.error.col(k).data(), filter.covariance[static_cast<std::size_t>(k)].data()};
-            if (shape.has_innovations()) {
-                step.innovation = trial.innovation.col(k).data();
-                step.innovation_covariance = innovation_covariance.data();
-            }
-            totals.add(step);
-        }
+        errors.insert(errors.end(), trial.error.data(), trial.error.data() + steps * n);
+        innovations.insert(innovations.end(), trial.innovation.data(), trial.innovation.data() + steps * m);
     }
-    const Record record = totals.finish();
-    return judge(evidence_of(record.results, record.results.arms.front()), Limits());
+    const Eigen::MatrixXd S = Eigen::MatrixXd::Identity(m, m);
+    constexpr RecordArray::Type real = RecordArray::Type::real64;
+    RecordArrays record;
+    record.arrays = {{"error", errors.data(), real, {trials, steps, n}, {steps * n, n, 1}},
+                     {"covariance", covariances.data(), real, {trials, steps, n, n}, {0, n * n, n, 1}}};
+    if (m > 0) {
+        record.arrays.push_back({"innovation", innovations.data(), real, {trials, steps, m}, {steps * m, m, 1}});
+        record.arrays.push_back({"innovation_covariance", S.data(), real, {trials, steps, m, m}, {0, 0, m, 1}});
+    }
+    for (std::size_t g = 1; g < filter.groups.size(); ++g) {
+        std::vector<std::string> entry{filter.groups[g].name};
+        for (int j = 0; j < filter.groups[g].count; ++j) entry.push_back(std::to_string(filter.groups[g].component(j)));
+        record.lists["groups"].push_back(entry);
+    }
+    return judge(evidence_of(read_record(record, "study")), Limits());
 }
 
 /// Makes the studies of one cell after the other, each cell with seeds of its own.

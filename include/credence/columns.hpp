@@ -20,6 +20,9 @@ enum class Status : std::int8_t {
 inline constexpr double largest_number = 1e70;
 /// A trial is lost if NEES/n of the whole state, mean over its steps, is beyond this: errors of five sigma throughout.
 inline constexpr double lost_nees_ratio = 25;
+/// So many numbers, steps times components, a trial has at least that may be lost: in fewer, a large error or two are
+/// chance.
+inline constexpr int least_lost_numbers = 20;
 
 const std::vector<std::string>& status_names();
 

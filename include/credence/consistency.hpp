@@ -44,6 +44,7 @@ enum class Subject {
     distribution,  ///< of NEES, against chi-square
     tenth,         ///< mean errors over a tenth of the steps
     calibration,   ///< NEES/dimension of the trials with a small or a large P
+    offset,        ///< a mean error, or its drift, of runs too few to tell what was drawn once from a bias
 };
 
 /// `size`, `step`, `direction` ...
@@ -122,7 +123,7 @@ struct Consistency {
     Verdict verdict = Verdict::undecided;
     Limits limits;
     std::vector<Finding> findings;   ///< evidence against consistency
-    /// Cautions that do not concern the size of P: innovations that are correlated, errors whose distribution is not
+    /// Notes of what is no finding. Cautions that do not concern the size of P: innovations that are correlated, errors whose distribution is not
     /// normal. The verdict does not depend on them, except for that on a single trial.
     std::vector<Finding> cautions;
     DirectionsFound directions;

@@ -8,6 +8,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,8 @@ struct GroupEvidence {
     /// Bound on what rounding may have done to NEES, as a share of it [statistics/moments/conditioning.hpp]; 0 where
     /// unknown.
     double rounding = 0;
+    double largest = 0;                        ///< of `run`'s numbers, where they are of segments; else 0
+    Moments centred;                           ///< as `run`, with errors about their mean [Evidence::centred]
 };
 
 /// NEES of a component group with its error in another chart and the same covariance [docs/estimators.md, NEES]: shown
@@ -74,6 +77,7 @@ struct NisEvidence {
     double degrees = 0, ratio = 0;             ///< over all steps
     Interval ratio95;                          ///< of the ratio, Student's, by the spread of trials; NaN for one trial
     Interval scale95;                          ///< of the factor by which S is too small, were the innovations white
+    Moments run{};                             ///< the ratio, with the spread of `ratio95`
 };
 
 /// Correlation of whitened innovations a lag apart.
@@ -95,6 +99,12 @@ struct BiasEvidence {
     std::vector<Moments> step;
     double largest_error = 0;                  ///< of the detailed trials, in the component's unit
     std::vector<double> mean_square;           ///< of their errors, by step, in the unit's square; NaN: unknown
+    /// Of its squared standardised error, of the detailed trials, averaged over each one's steps: NEES of a group of
+    /// its own. None where a group is this component alone. `centred`: with errors about their mean.
+    Moments square{}, centred{};
+    double largest_square = 0;                 ///< of `square`'s numbers, where they are of segments; else 0
+    /// In sigmas, from the start to the end of the run in which it is largest; 0 where none is shown.
+    double drift = 0, drift_half_width = 0;
 };
 
 /// The numbers of single trials from which directions are computed [src/statistics/moments/trial_moments.hpp].
@@ -125,13 +135,16 @@ struct WorstTrials {
     double share = 0;                          ///< of the sum of NEES over the detailed trials
 };
 
-/// So many independent parts of runs are needed for a verdict; as many runs are trials by themselves.
+/// So many independent parts of runs are needed for a verdict; as many runs are trials by themselves, too.
 inline constexpr int least_segments = 20;
+/// Up to so many runs are counted by segments, and from so many on their spread tells what is drawn once in each.
+inline constexpr int most_runs_in_segments = 200, runs_that_tell = 5;
 
 /// Segments of the runs of a record [docs/statistics.md, One log]. If they count, they take the place of trials in
 /// everything that is not by step.
 struct SegmentEvidence {
     bool count = false;
+    std::string differ{};                      ///< in which the runs differ, so that they count and segments do not
     int steps = 0;                             ///< of a segment; 0: there are none
     /// The longest of any run, in steps: infinite where its errors do not decorrelate, 0 where it was not computed.
     double autocorrelation_time = 0;
@@ -168,6 +181,10 @@ struct Evidence {
     WorstTrials worst;
     std::vector<Moments> fifths;               ///< of NEES/n, of the trials by their log det P; may be empty
     std::shared_ptr<const TrialMoments> moments;  ///< of the detailed trials; null where the file has none
+    /// The same with errors about the mean of their run, or of their segment where a drift is shown, where segments of
+    /// fewer than `runs_that_tell` runs count; else null.
+    std::shared_ptr<const TrialMoments> centred;
+    bool of_innovations = false;               ///< innovations stand for errors
     double epsilon = std::numeric_limits<double>::epsilon();  ///< relative spacing of the numbers of covariances
     SegmentEvidence segments;
     bool joint = true;                         ///< false: of a record without a covariance of the whole state
@@ -175,6 +192,10 @@ struct Evidence {
     std::int64_t failed_trials() const { return left_out + lost; }
     /// Upper 95 % bound on the share of trials that fail or are lost [Clopper and Pearson 1934]; NaN of one log.
     double may_be_unseen() const;
+    /// Whether segments count, of runs too few to be trials themselves.
+    bool of_few_runs() const { return segments.count && trials < least_segments; }
+    /// Whether the runs are too few to tell what was drawn once in each from a bias.
+    bool has_offsets() const { return segments.count && trials < runs_that_tell; }
     /// Steps of what is independent: of a trial, or of a segment where these count.
     int steps_together() const { return segments.count ? segments.steps : steps; }
     /// What is independent: `trials` or `segments`.
@@ -185,7 +206,16 @@ struct Evidence {
 Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm);
 
 /// The evidence of a record's runs with that of its segments, which come from results of their own, in everything that
-/// is not by step; `runs.segments` says which they are.
-Evidence by_segments(Evidence runs, Evidence segments);
+/// is not by step, but for the bias of five runs or more; `runs.segments` says which they are. That of the runs alone
+/// where these differ by more than their segments say.
+/// `centred`: of the segments with errors about their mean.
+Evidence by_segments(Evidence runs, Evidence segments, const std::optional<Evidence>& centred = {});
+
+/// A component's mean error that changes over the runs, of segments; else 0.
+struct Drift {
+    double size = 0, half_width = 0;  ///< in sigmas, of the run in which it is largest
+};
+/// By component. `segments.segments` says of which runs they are.
+std::vector<Drift> drifts_of(const Evidence& segments);
 
 }  // namespace credence

@@ -45,7 +45,7 @@ struct LargestNis {
     std::vector<double> largest;  ///< ten at most, rising
 };
 
-/// In place of the steps of a segment: chosen by the errors where there are fewer than `least_segments` runs
+/// In place of the steps of a segment: chosen by the errors where there are up to `most_runs_in_segments` runs
 /// [evidence.hpp]; no segments.
 inline constexpr int segments_auto = -1, segments_off = 0;
 
@@ -54,6 +54,8 @@ struct RecordSegments {
     int asked = segments_auto;  ///< as given to `read_record`
     SegmentEvidence found{};
     std::shared_ptr<const ScenarioResults> results{};  ///< of segments in place of trials, if they count; else null
+    /// The same with errors about their mean [Evidence::centred], also where segments do not count; else null.
+    std::shared_ptr<const ScenarioResults> centred{};
 };
 
 /// The error of a component over a run.
@@ -89,6 +91,7 @@ struct Record {
     ScenarioResults results;
     int every = 1;  ///< which steps the results by step have: all up to 99,999, of longer runs some 10,000
     bool has_innovations = false;
+    bool of_innovations = false;  ///< which stand for errors
     std::vector<RecordTrouble> troubles;  ///< the first 20
     std::int64_t trouble_count = 0;       ///< trials that failed
     RecordGaps gaps{};
@@ -135,6 +138,9 @@ struct Record {
 /// Throws InputError `FILE: PLACE: PROBLEM. REMEDY.` for any other deviation from this format. `progress` may be empty.
 Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress = {},
                    int segments = segments_auto);
+
+/// The evidence of its runs, and of their segments if these count.
+Evidence evidence_of(const Record& record);
 
 /// Throws InputError naming what shows that the runs of a record are not those of the first: another `seed`, numbers of
 /// runs, steps or components, `trial`, `truth`, `time` or `steps`. What only one of them has shows nothing.

@@ -12,6 +12,13 @@
 
 namespace credence {
 
+/// Weighted sums of the errors of runs and segments, the weights 1/sigma^2, [segments][2 n]: the weighted errors, and
+/// the weights. What is subtracted is the mean of the run or, of components that drift, that of the segment.
+struct SegmentMeans {
+    std::vector<std::vector<double>> of_run, of_segment;
+    std::vector<char> drifts;  ///< [n]; empty while the sums are made
+};
+
 /// Chooses the segments of a record, from its runs one after the other.
 class SegmentPlanner {
 public:
@@ -29,10 +36,14 @@ private:
     /// Whether the length of segments follows from the runs.
     bool measures() const { return wanted_ && asked_ == segments_auto; }
     void cut(std::int64_t run, const std::vector<std::size_t>& present);
-    ScenarioResults results(const RecordReader& reader, const std::string& name) const;
+    void cut_all(double steps);
+    void choose_length();
+    ScenarioResults results(const RecordReader& reader, const std::string& name, SegmentMeans* means) const;
 
     int asked_;
     bool wanted_;
+    std::int64_t runs_;  ///< of the record
+    int n_;
     SegmentEvidence found_;
     std::vector<std::pair<std::int64_t, std::vector<std::size_t>>> uncut_;  ///< runs, while the length is not known
     std::vector<int> first_, declared_;  ///< [segments] the first step, and how many up to its last one

@@ -38,6 +38,7 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, Lo
     record_.every = static_cast<int>(kept_.every);
     record_.results = empty_record_results(shape_, all_series_.list, path, static_cast<int>(kept));
     record_.has_innovations = shape.has_innovations();
+    record_.of_innovations = shape.of_innovations;
     for (std::size_t g = 0; shape.has_innovations() && g <= shape.row_groups.size(); ++g)
         record_.largest_nis.push_back({g == 0 ? "all" : shape.row_groups[g - 1].name, 0, 0, 0, {}});
     keeps_nees_ = shape.trials <= most_values / kept;
@@ -205,7 +206,9 @@ void RecordTotals::add_columns(std::int64_t trial) {
             row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_group(shape_));
         }
         row[RecordColumn::nees_ratio] = over_steps(0) / count(0) / shape_.n;
-        if (row[RecordColumn::nees_ratio] > lost_nees_ratio) note_lost(trial, row[RecordColumn::nees_ratio]);
+        if (row[RecordColumn::nees_ratio] > lost_nees_ratio &&
+            std::ssize(present_) * shape_.n >= least_lost_numbers)
+            note_lost(trial, row[RecordColumn::nees_ratio]);
         row[RecordColumn::nis_ratio] =
             record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;
     }

@@ -86,15 +86,6 @@ bool is_too_large(const Finding& finding) {
     return finding.what == Fault::optimistic && (finding.about == Subject::size || finding.about == Subject::direction);
 }
 
-/// That of its runs, and of their segments if these count.
-Evidence evidence_of(const Record& record) {
-    Evidence evidence = evidence_of(record.results, record.results.arms.front());
-    evidence.segments = record.segments.found;
-    if (!evidence.segments.count) return evidence;
-    const ScenarioResults& segments = *record.segments.results;
-    return by_segments(std::move(evidence), evidence_of(segments, segments.arms.front()));
-}
-
 /// Gives the means of the whole record the intervals of its segments.
 void set_means(const ScenarioResults& segments, ArmReport& arm) {
     const Evidence& evidence = arm.evidence;
@@ -163,7 +154,7 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     arm.curves = std::move(record.curves);
     if (arm.evidence.segments.count) {
         set_means(*record.segments.results, arm);
-        report.not_judged.push_back(
+        if (arm.evidence.of_few_runs()) report.not_judged.push_back(
             "What is drawn once in a run, such as a constant bias, the map or the start, is seen once in each: so few "
             "runs cannot show whether P is right about it.");
     }

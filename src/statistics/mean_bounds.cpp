@@ -18,8 +18,8 @@ double level_of_group(double level, int g, int groups) {
     return g == 0 ? level / 2 : level / (2 * (groups - 1));
 }
 
-PositiveSample positive_sample(const Moments& moments) {
-    return {moments.count, moments.mean, moments.standard_deviation};
+PositiveSample positive_sample(const Moments& moments, double largest) {
+    return {moments.count, moments.mean, moments.standard_deviation, largest};
 }
 
 double unseen_share(double level, double trials) { return -std::expm1(std::log(level) / trials); }
@@ -29,7 +29,9 @@ double lower_bound(const PositiveSample& sample, double level) { return sample.m
 double upper_bound(const PositiveSample& sample, double level) { return sample.mean + half_width(sample, level); }
 
 MeanClaim claim_on_mean(const PositiveSample& sample, double level, double margin, double unseen) {
-    const double missed = unseen_share(unseen, sample.trials) * (unseen_size - 1) * sample.mean;
+    const double size = sample.of_few_numbers ? unseen_size - sample.mean : (unseen_size - 1) * sample.mean;
+    const double missed = unseen_share(unseen, sample.trials) * std::max(0.0, size) +
+                          std::max(0.0, sample.largest - sample.mean) / sample.trials;
     MeanClaim claim;
     claim.bounds = {lower_bound(sample, level), upper_bound(sample, level) + missed};
     claim.above = claim.bounds.low > 1 + margin;

@@ -25,9 +25,17 @@ double level_of_group(double level, int g, int groups);
 /// What is known of N positive numbers.
 struct PositiveSample {
     double trials = 0, mean = 0, standard_deviation = 0;  ///< N; sd with N - 1
+    /// The largest of them, where they are of segments of runs: beside the unseen share, one more like it may have been
+    /// missed. 0: not so.
+    double largest = 0;
+    /// Each is the mean of so few numbers, steps times components, that the law of small errors matters: a trial that
+    /// was not seen may have an error of three sigma by P, however small the others are.
+    bool of_few_numbers = false;
 };
+/// Fewer numbers than these are few.
+inline constexpr double many_numbers = 20;
 
-PositiveSample positive_sample(const Moments& moments);
+PositiveSample positive_sample(const Moments& moments, double largest = 0);
 
 /// A trial that was not seen may have a squared error of so many times the mean: three sigma.
 inline constexpr double unseen_size = 9;

@@ -243,7 +243,7 @@ std::string divergence_of(const Evidence& evidence) {
 }
 
 std::vector<std::string> causes_of(const Evidence& evidence, const Limits& limits) {
-    const Sizes sizes = evidence.segments.count ? Sizes{} : sizes_of(evidence);
+    const Sizes sizes = evidence.of_few_runs() ? Sizes{} : sizes_of(evidence);
     std::vector<std::string> causes{few_of(evidence, limits), placeholders_of(sizes)};
     for (const auto& cause : {exchange_of, power_of, degrees_of, shift_of}) {  // one explains the size of the errors
         causes.push_back(cause(sizes));

@@ -1,6 +1,7 @@
 // The cautions beside a verdict.
 
 #include "statistics/goodness.hpp"
+#include "statistics/mean_bounds.hpp"
 #include "statistics/whiteness.hpp"
 #include "verdict/consistency_parts.hpp"
 #include "verdict/judgement.hpp"
@@ -15,30 +16,41 @@ Interval interval_of(const Whiteness& lag) {
 
 }  // namespace
 
-/// Correlations that differ from 0 by significantly more than the margin: with enough trials every filter has some
-/// correlation.
-void caution_about_whiteness(const Evidence& evidence, Consistency& verdict) {
+/// With enough trials every filter has some correlation.
+std::optional<Finding> correlation_found(const Evidence& evidence, double margin) {
     const Whiteness* worst = nullptr;
     std::vector<int> lags;
     for (const Whiteness& lag : evidence.whiteness) {
         if (!lag.known() || static_cast<double>(lag.count) < least_products ||
-            !(std::abs(lag.scaled) - lag.simultaneous_bound > verdict.limits.margin))
+            !(std::abs(lag.scaled) - lag.simultaneous_bound > margin))
             continue;
         if (worst == nullptr || std::abs(lag.scaled) > std::abs(worst->scaled)) worst = &lag;
         lags.push_back(lag.lag);
     }
-    if (worst == nullptr) return;
-    verdict.cautions.push_back({Subject::whiteness, Fault::correlated, "innovations", listed("lag", lags),
-                                worst->scaled, interval_of(*worst), "relative correlation"});
+    if (worst == nullptr) return std::nullopt;
+    return Finding{Subject::whiteness, Fault::correlated,   "innovations",         listed("lag", lags),
+                   worst->scaled,      interval_of(*worst), "relative correlation"};
+}
+
+void caution_about_whiteness(const Evidence& evidence, Consistency& verdict) {
+    if (const std::optional<Finding> found = correlation_found(evidence, verdict.limits.margin))
+        verdict.cautions.push_back(*found);
 }
 
 /// Innovations of the wrong size beside a consistent state: NEES does not show them.
 void caution_about_innovations(const Evidence& evidence, Consistency& verdict) {
     if (verdict.verdict != Verdict::consistent && verdict.verdict != Verdict::undecided) return;
-    for (const NisEvidence& nis : evidence.nis)
-        if (const Side side = side_of(nis.ratio95, verdict.limits.margin); side != Side::inside)
-            verdict.cautions.push_back({Subject::innovations, fault_of(side), "innovations (" + nis.part + ")",
-                                        "over all steps", nis.ratio, nis.ratio95, "NIS/m"});
+    for (std::size_t i = 0; i < evidence.nis.size(); ++i) {
+        const NisEvidence& nis = evidence.nis[i];
+        const PositiveSample sample = positive_sample(nis.run);
+        const double level = level_of_group(levels::run, static_cast<int>(i), static_cast<int>(evidence.nis.size())) / 2,
+                     degrees = std::min(nis.degrees, degrees_over_steps(sample, 1, nis.degrees / sample.trials));
+        const MeanClaim claim = claim_on_nees(sample, degrees, level, verdict.limits.margin);
+        if (claim.above || claim.below)
+            verdict.cautions.push_back({Subject::innovations, claim.above ? Fault::optimistic : Fault::pessimistic,
+                                        "innovations (" + nis.part + ")", "over all steps", nis.ratio, claim.bounds,
+                                        "NIS/m"});
+    }
 }
 
 /// A distance from chi-square that is significantly beyond the margin: Massart's bound on the distance of N values from

@@ -27,6 +27,8 @@ public:
 
 private:
     double margin() const { return judgement_.limits().margin; }
+    /// A single step of few trials: the bound by chi-square supposes that NEES near 0 is as it says.
+    bool is_note() const { return evidence_.steps == 1 && static_cast<double>(evidence_.trials) < many_trials; }
 
     void leave_out() {
         const std::string text = std::isfinite(group_.rounding)
@@ -37,24 +39,16 @@ private:
     }
 
     void over_steps() {
-        const PositiveSample sample = positive_sample(group_.run);
-        const auto groups = static_cast<int>(evidence_.groups.size());
-        const double level = level_of_group(levels::run, place_, groups) / 2;
-        const double degrees = degrees_over_steps(sample, group_.dimension, evidence_.steps_together());
-        const MeanClaim claim = claim_on_nees(sample, degrees, level, margin());
-        if (claim.above || claim.below)
-            judgement_.add(
-                claim.above ? Side::above : Side::below,
-                {Subject::size, Fault{}, group_.name, "over all steps", sample.mean, claim.bounds, "NEES/dim"});
-        else if (std::optional<Suspicion> looks = suspicion_of(sample, level, margin()))
-            judgement_.suspect({Subject::size, looks->what, group_.name, looks->value, "NEES/dim", looks->trials});
+        const PositiveSample sample = positive_sample(group_.run, group_.largest);
+        judge_size({group_.name, group_.dimension, group_.components, sample, positive_sample(group_.centred)}, place_,
+                   evidence_, judgement_);
         const double shown = margin_shown(acceptance_interval(sample, sample));
         judgement_.reach(&Reached::nees, shown);
         judgement_.accept(shown <= margin(), "NEES/dim of " + group_.name);
     }
 
     void at_steps() {
-        const double tests = static_cast<double>(evidence_.groups.size()) * evidence_.steps;
+        const double tests = static_cast<double>(groups_judged(evidence_)) * evidence_.steps;
         Found found[2];
         for (std::size_t k = 0; k < group_.step.size(); ++k) {
             if (!(group_.step[k].count > 1)) continue;
@@ -64,9 +58,11 @@ private:
             if (claim.above || claim.below) found[claim.above ? 0 : 1].add(k, group_.step[k].mean, claim.bounds);
         }
         for (const Side side : {Side::above, Side::below})
-            if (const Found& steps = found[side == Side::above ? 0 : 1]; !steps.steps.empty())
-                judgement_.add(side, {Subject::step, Fault{}, group_.name, steps_text(steps.steps), steps.value,
-                                      steps.interval, "NEES/dim"});
+            if (const Found& steps = found[side == Side::above ? 0 : 1]; !steps.steps.empty()) {
+                const Finding finding{Subject::step, fault_of(side),  group_.name, steps_text(steps.steps),
+                                      steps.value,   steps.interval, "NEES/dim"};
+                is_note() ? judgement_.note(finding) : judgement_.add(side, finding);
+            }
     }
 
     const Evidence& evidence_;
@@ -78,8 +74,10 @@ private:
 Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
     Judgement judgement(limits);
     for (std::size_t group = 0; group < evidence.groups.size(); ++group) GroupJudge(evidence, group, judgement).judge();
+    judge_components(evidence, judgement);
     judge_directions(evidence, judgement);
     judge_bias(evidence, judgement);
+    judge_innovations(evidence, judgement);
     judge_tenths(evidence, judgement);
     judge_fifths(evidence, judgement);
     if (evidence.segments.count) judge_segments(evidence, judgement);
@@ -98,7 +96,7 @@ Consistency judge_survivors(const Evidence& evidence, const Limits& limits) {
     }
     Consistency verdict = judge_trials(evidence, limits);
     if (evidence.groups.empty() || evidence.trials == 0) return verdict;
-    caution_about_whiteness(evidence, verdict);
+    if (!evidence.of_innovations) caution_about_whiteness(evidence, verdict);
     caution_about_innovations(evidence, verdict);
     caution_about_distribution(evidence, verdict);
     add_hints(evidence, verdict);
@@ -112,6 +110,13 @@ void Judgement::add(Side side, Finding finding) {
     finding.what = fault_of(side);
     findings_.push_back(std::move(finding));
 }
+
+void Judgement::add_correlation(Finding finding) {
+    (finding.value > 0 ? above_ : below_) = true;
+    findings_.push_back(std::move(finding));
+}
+
+void Judgement::note(Finding finding) { notes_.push_back(std::move(finding)); }
 
 void Judgement::add_bias(Finding finding) {
     above_ = true;
@@ -141,6 +146,7 @@ Consistency Judgement::consistency(const Evidence& evidence) {
     Consistency verdict;
     verdict.limits = limits_;
     verdict.findings = std::move(findings_);
+    verdict.cautions = std::move(notes_);
     verdict.directions = std::move(directions);
     for (double Reached::* margin : {&Reached::nees, &Reached::direction, &Reached::bias}) {
         const double reached = reached_.*margin;
@@ -192,7 +198,7 @@ const std::string& fault_name(Fault fault) {
 
 const std::string& subject_name(Subject subject) {
     static const std::string names[] = {"size",        "step",      "direction",   "bias",
-                                        "innovations", "whiteness", "distribution", "tenth", "calibration"};
+                                        "innovations", "whiteness", "distribution", "tenth", "calibration", "offset"};
     return names[static_cast<int>(subject)];
 }
 
@@ -205,8 +211,7 @@ bool too_many_failed(std::int64_t failed, std::int64_t trials, double share) {
 
 Consistency judge(const Evidence& evidence, const Limits& limits) {
     Consistency verdict = judge_survivors(evidence, limits);
-    const std::int64_t failed = evidence.lost_are_judged ? evidence.left_out : evidence.failed_trials();
-    if (too_many_failed(failed, evidence.all_trials, limits.failed)) {
+    if (too_many_failed(evidence.failed_trials(), evidence.all_trials, limits.failed)) {
         verdict.verdict = Verdict::failed;
         verdict.reasons.clear();
         verdict.trials_needed = {};
@@ -220,7 +225,8 @@ std::string when_text(const Finding& finding) {
 }
 
 std::string sentence(const Finding& finding) {
-    const bool of_component = finding.about == Subject::bias || finding.about == Subject::tenth;
+    const bool of_component =
+        finding.about == Subject::bias || finding.about == Subject::tenth || finding.about == Subject::offset;
     const std::string where = (of_component ? "component " : "") + finding.where;
     return fault_name(finding.what) + ": " + where + ", " + when_text(finding) + ", " + finding.measure +
            formatted(" %.3g (%.3g to %.3g)", finding.value, finding.interval.low, finding.interval.high);

@@ -50,6 +50,8 @@ NisEvidence nis_evidence(const ScenarioResults& results, const ArmResults& arm, 
         const double rows_a_trial = evidence.degrees / run.count,
                      half = t_quantile(0.05, run.count - 1) * run.standard_error / rows_a_trial;
         evidence.ratio95 = {evidence.ratio - half, evidence.ratio + half};
+        evidence.run = {run.count, evidence.ratio, run.standard_deviation / rows_a_trial,
+                        run.standard_error / rows_a_trial};
     }
     return evidence;
 }
@@ -149,6 +151,26 @@ std::shared_ptr<const TrialMoments> trial_moments(const ScenarioResults& results
     return moments->trials() == 0 ? nullptr : moments;
 }
 
+template <class Value>
+Moments moments_of_trials(const TrialMoments& trials, const Value& value) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < trials.trials(); ++i)
+        if (const double x = value(i); !std::isnan(x)) values.push_back(x);
+    return moments_of(exact_moments(values));
+}
+
+/// NEES of each component by itself, but for those that are groups.
+void add_squares(Evidence& evidence) {
+    if (!evidence.moments || std::ssize(evidence.bias) != evidence.moments->components) return;
+    for (std::size_t j = 0; j < evidence.bias.size(); ++j) {
+        const std::vector<int> alone{static_cast<int>(j)};
+        const int at = triangle_place(alone.front(), alone.front());
+        if (std::ranges::find(evidence.groups, alone, &GroupEvidence::components) == evidence.groups.end())
+            evidence.bias[j].square = moments_of_trials(
+                *evidence.moments, [&](std::size_t i) { return evidence.moments->S(i)[at] / evidence.moments->C(i)[at]; });
+    }
+}
+
 /// The detailed rows that have a NEES.
 std::vector<WorstTrial> trials_by_nees(const ScenarioResults& results, const ArmResults& arm) {
     const auto steps = static_cast<std::size_t>(results.steps());
@@ -206,14 +228,6 @@ std::vector<WorstTrial> set_lost_aside(const ScenarioResults& results, ArmResult
     }
     keep_worst(lost);
     return lost;
-}
-
-template <class Value>
-Moments moments_of_trials(const TrialMoments& trials, const Value& value) {
-    std::vector<double> values;
-    for (std::size_t i = 0; i < trials.trials(); ++i)
-        if (const double x = value(i); !std::isnan(x)) values.push_back(x);
-    return moments_of(exact_moments(values));
 }
 
 /// Where more than half of the trials are lost, the filter as a whole is judged, by the detailed trials: the totals are
@@ -299,7 +313,7 @@ void count_trials(const ScenarioResults& results, const ArmResults& arm, Evidenc
 }  // namespace
 
 double Evidence::may_be_unseen() const {
-    if (segments.count || all_trials < 2) return nan;
+    if (of_few_runs() || all_trials < 2) return nan;
     return share_upper_bound(static_cast<double>(failed_trials()), static_cast<double>(all_trials), 0.05);
 }
 
@@ -330,6 +344,7 @@ Evidence evidence_of_counted(const ScenarioResults& results, const ArmResults& a
     add_error_sizes(results, arm, evidence.bias);
     evidence.fifths = fifths_by_size(results, arm);
     evidence.moments = trial_moments(results, arm, evidence.groups);
+    add_squares(evidence);
     evidence.epsilon = results.epsilon;
     add_rounding(arm, evidence);
     return evidence;

@@ -25,6 +25,25 @@ void judge_suspicion(const BiasEvidence& bias, int components, Judgement& judgem
             {Subject::bias, Fault::biased, bias.component, looks->value, "mean error/sigma", looks->trials});
 }
 
+/// Of runs too few to tell them from what was drawn once: an offset or a drift is a note, and a mean that is beyond one
+/// draw of each run a finding.
+void judge_offset(const BiasEvidence& bias, const BiasClaim& claim, const Evidence& evidence, Judgement& judgement) {
+    const std::string several = "once in a run; five runs can tell";
+    if (bias.drift != 0)
+        judgement.note({Subject::offset, Fault::biased, bias.component, "drift over the run, of the filter or drawn " + several,
+                        bias.drift, {bias.drift - bias.drift_half_width, bias.drift + bias.drift_half_width},
+                        "drift/sigma"});
+    if (!claim.finding) return;
+    constexpr double one_draw = 3.2;
+    const double nearest = std::min(std::abs(claim.interval.low), std::abs(claim.interval.high));
+    if (nearest > one_draw / std::sqrt(static_cast<double>(evidence.trials)))
+        judgement.add_bias({Subject::bias, Fault::biased, bias.component, worst_step(bias), claim.value, claim.interval,
+                            "mean error/sigma"});
+    else
+        judgement.note({Subject::offset, Fault::biased, bias.component, "over all steps: a bias, or drawn " + several,
+                        claim.value, claim.interval, "mean error/sigma"});
+}
+
 }  // namespace
 
 void judge_bias(const Evidence& evidence, Judgement& judgement) {
@@ -33,7 +52,9 @@ void judge_bias(const Evidence& evidence, Judgement& judgement) {
         if (!(bias.run.count > 0) && evidence.trials > 0) continue;
         const BiasClaim claim = claim_on_bias(bias.run, bias.largest_error, static_cast<int>(evidence.bias.size()),
                                               judgement.limits().bias);
-        if (claim.finding)
+        if (evidence.has_offsets())
+            judge_offset(bias, claim, evidence, judgement);
+        else if (claim.finding)
             judgement.add_bias({Subject::bias, Fault::biased, bias.component, worst_step(bias), claim.value,
                                 claim.interval, "mean error/sigma"});
         else if (!claim.known_exactly)

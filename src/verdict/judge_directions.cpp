@@ -56,14 +56,22 @@ void leave_out_directions(const Evidence& evidence, Judgement& judgement) {
 }
 
 DirectionLimits limits_of(const Evidence& evidence, const Judgement& judgement) {
-    return {judgement.limits().margin, evidence.epsilon};
+    return {judgement.limits().margin, evidence.epsilon, static_cast<double>(evidence.steps_together()),
+            evidence.segments.count};
 }
 
 /// A group's directions, and the findings in them.
 void judge_group(const Evidence& evidence, const GroupEvidence& group, const GroupMoments& moments,
                  const FoldSums& sums, double level, Judgement& judgement) {
-    const GroupDirections found = find_directions(moments, sums, level, limits_of(evidence, judgement));
+    GroupDirections found = find_directions(moments, sums, level, limits_of(evidence, judgement));
     if (found.state != GroupDirections::State::known) return;
+    if (evidence.has_offsets()) found.smallest.finding = false;
+    if (evidence.has_offsets() && evidence.centred) {
+        const GroupMoments centred = group_moments(*evidence.centred, moments.components);
+        const GroupDirections about = find_directions(centred, fold_sums(centred), level, limits_of(evidence, judgement));
+        if (about.state != GroupDirections::State::known) return;
+        found.largest = about.largest;
+    }
     const auto add = [&](Side side, const Direction& direction, std::vector<DirectionOfGroup>& all) {
         all.push_back({group.name, name_of(direction, evidence.bias), direction.ratio.mean, direction.bounds, level,
                        loadings_of(direction, evidence.bias)});

@@ -67,7 +67,7 @@ std::vector<Moments> fifths_by_size(const ScenarioResults& results, const ArmRes
 }
 
 void judge_fifths(const Evidence& evidence, Judgement& judgement) {
-    if (evidence.fifths.empty() || evidence.segments.count) return;
+    if (evidence.fifths.empty() || evidence.of_few_runs()) return;
     const GroupEvidence& state = evidence.groups.front();
     if (is_rounded(state, judgement.limits())) return;
     static const char* const places[fifths] = {"smallest", "second smallest", "middle", "second largest", "largest"};

@@ -50,7 +50,7 @@ void withhold(const std::string& what, const std::vector<std::string>& names, Ju
 }  // namespace
 
 void judge_tenths(const Evidence& evidence, Judgement& judgement) {
-    if (evidence.steps < tenths * least_steps || evidence.segments.count) return;
+    if (evidence.steps < tenths * least_steps || evidence.of_few_runs()) return;
     std::vector<std::string> groups, components;
     for (const GroupEvidence& group : evidence.groups) {
         if (!(group.run.count > 1) || is_rounded(group, judgement.limits())) continue;

@@ -23,6 +23,10 @@ public:
     /// A finding that something is too large (above) or too small for P; its `what` is set here.
     void add(Side side, Finding finding);
     void add_bias(Finding finding);
+    /// Innovations that are correlated, where the verdict is of them: their sums are too large for S, or too small.
+    void add_correlation(Finding finding);
+    /// What is said and is no finding.
+    void note(Finding finding);
     /// Whether something was shown to lie within its margin; `what` names it.
     void accept(bool shown, const std::string& what);
     /// What was shown in one group, component or all directions; infinite where nothing was.
@@ -38,7 +42,7 @@ public:
 
 private:
     Limits limits_;
-    std::vector<Finding> findings_;
+    std::vector<Finding> findings_, notes_;
     std::vector<std::string> reasons_, unknown_;
     std::vector<Suspicion> suspicions_;
     Reached reached_;
@@ -59,6 +63,42 @@ std::optional<Suspicion> suspicion_of_bias(const Moments& z, double level, doubl
 /// Those of these components that some trial has and that are not known exactly: the others have no error to be too
 /// large or too small.
 std::vector<int> uncertain_components(const Evidence& evidence, const std::vector<int>& components);
+
+/// From so many trials on, the mean of numbers of an unknown distribution is known well enough.
+inline constexpr double many_trials = 200;
+
+/// How many groups are judged: those that are named, and the components that are none of them.
+int groups_judged(const Evidence& evidence);
+
+/// A group's NEES/dimension, one number a trial.
+struct JudgedSize {
+    std::string name;
+    int dimension = 0;
+    std::vector<int> components;
+    PositiveSample sample, centred;  ///< `centred`: of errors about their mean; no trials where these are not judged
+};
+/// Finds it too large or too small. `place`: of the group among all that are judged.
+void judge_size(const JudgedSize& size, int place, const Evidence& evidence, Judgement& judgement);
+
+/// NEES of every component by itself.
+void judge_components(const Evidence& evidence, Judgement& judgement);
+
+/// Whether a component has an offset or a drift in its runs [judge_bias].
+bool has_offset(const BiasEvidence& bias, const Evidence& evidence, const Limits& limits);
+
+/// Bounds on the mean over the steps of NEES/dimension, for a filter that is right, whatever the correlation of the
+/// steps of each of so many independent runs: P(mean >= c) <= exp(-runs d/2 (c - 1 - ln c)), likewise below [Chernoff
+/// 1952; Jensen's inequality for the mean].
+Interval bounds_at_any_correlation(double runs, int dimension, double level);
+
+/// Withholds that something is too small, which runs that are so few cannot show, and says it of these runs.
+void withhold_too_small(const JudgedSize& size, const Interval& bounds, const Evidence& evidence, Judgement& judgement);
+
+/// Correlations of innovations that differ from 0 by significantly more than the margin, the largest of them.
+std::optional<Finding> correlation_found(const Evidence& evidence, double margin);
+
+/// Correlated innovations, where the verdict is of innovations.
+void judge_innovations(const Evidence& evidence, Judgement& judgement);
 
 /// Directions of every group of two or more components.
 void judge_directions(const Evidence& evidence, Judgement& judgement);

@@ -14,7 +14,7 @@ namespace credence {
 
 namespace {
 
-constexpr double doubted = 0.01;  ///< the level at which segments count as dependent, shared by all their series
+constexpr double doubted = 0.01;  ///< the level at which segments count as dependent, or runs as different, of all series
 
 /// One number of each segment, run by run: NEES/dim of a group, or the mean standardised error of a component.
 struct SegmentSeries {
@@ -28,14 +28,15 @@ struct SegmentSeries {
     }
 };
 
-std::vector<SegmentSeries> series_of(const Evidence& evidence) {
+/// `run`: of each segment.
+std::vector<SegmentSeries> series_of(const Evidence& evidence, const std::vector<std::int64_t>& run) {
     std::vector<SegmentSeries> all;
     const TrialMoments& moments = *evidence.moments;
     const auto add = [&](const std::string& name, auto value) {
         SegmentSeries series{name, {}};
         for (std::size_t i = 0; i < moments.trials(); ++i)
             if (const double x = value(i); !std::isnan(x))
-                series.values[evidence.segments.run[static_cast<std::size_t>(moments.trial[i])]][moments.trial[i]] = x;
+                series.values[run[static_cast<std::size_t>(moments.trial[i])]][moments.trial[i]] = x;
         all.push_back(std::move(series));
     };
     for (int g = 0; g < moments.groups; ++g)
@@ -69,6 +70,39 @@ bool neighbours_are_alike(const SegmentSeries& series, double level) {
     return correlation > allowed + normal_quantile(2 * level) / std::sqrt(pairs);
 }
 
+/// The slopes of a series over its segments, one a run: squares that they explain, of as many runs, and squares that
+/// are left; and the slope of largest size as the change from the first to the last segment, with its variance over
+/// that of what is left.
+struct Slopes {
+    double runs = 0, explained = 0, left = 0, degrees = 0, largest = 0, variance = 0;
+};
+
+Slopes slopes_of(const SegmentSeries& series) {
+    Slopes slopes;
+    for (const auto& [run, of_run] : series.values) {
+        const auto count = static_cast<double>(of_run.size());
+        if (count < 3) continue;
+        const double mean = series.mean(of_run), first = static_cast<double>(of_run.begin()->first),
+                     middle = (first + static_cast<double>(of_run.rbegin()->first)) / 2;
+        double xx = 0, xy = 0, yy = 0;
+        for (const auto& [segment, value] : of_run) {
+            const double x = static_cast<double>(segment) - middle;
+            xx += x * x;
+            xy += x * (value - mean);
+            yy += (value - mean) * (value - mean);
+        }
+        ++slopes.runs;
+        slopes.explained += xy * xy / xx;
+        slopes.left += yy - xy * xy / xx;
+        slopes.degrees += count - 2;
+        const double change = xy / xx * 2 * (middle - first);
+        if (std::abs(change) <= std::abs(slopes.largest)) continue;
+        slopes.largest = change;
+        slopes.variance = 4 * (middle - first) * (middle - first) / xx;
+    }
+    return slopes;
+}
+
 /// Whether runs differ by more than their segments say.
 bool runs_differ(const SegmentSeries& series, double level) {
     double all = 0, count = 0;
@@ -85,24 +119,12 @@ bool runs_differ(const SegmentSeries& series, double level) {
     return between / (runs - 1) > within / (count - runs) * f_upper_quantile(level, runs - 1, count - runs);
 }
 
-/// Bounds on the mean over the steps of NEES/dimension, for a filter that is right, whatever the correlation of the
-/// steps of each of so many independent runs: P(mean >= c) <= exp(-runs d/2 (c - 1 - ln c)), likewise below [Chernoff
-/// 1952; Jensen's inequality for the mean].
-Interval bounds_at_any_correlation(double runs, int dimension, double level) {
-    const double exponent = -2 * std::log(level) / (runs * dimension);
-    const auto solve = [&](double inside, double outside) {
-        for (int i = 0; i < 200; ++i) {
-            const double c = (inside + outside) / 2;
-            (c - 1 - std::log(c) < exponent ? inside : outside) = c;
-        }
-        return outside;
-    };
-    return {solve(1, 0), solve(1, 2 * (2 + exponent))};
-}
-
-/// As which segments count that are too few to show their spread.
-double independent_runs(const Evidence& evidence) {
+/// As which segments count that are too few to show their spread, and runs of which something was drawn once.
+double independent_segments(const Evidence& evidence) {
     return static_cast<double>(std::max<std::size_t>(1, evidence.segments.run.size()));
+}
+double independent_runs(const Evidence& evidence) {
+    return evidence.trials < runs_that_tell ? static_cast<double>(evidence.trials) : independent_segments(evidence);
 }
 
 void judge_size_of_run(const Evidence& evidence, std::size_t g, Judgement& judgement) {
@@ -110,11 +132,16 @@ void judge_size_of_run(const Evidence& evidence, std::size_t g, Judgement& judge
     if (!(group.run.count > 0) || is_rounded(group, judgement.limits())) return;
     const double level =
         level_of_group(levels::run, static_cast<int>(g), static_cast<int>(evidence.groups.size())) / 2;
-    const Interval bounds = bounds_at_any_correlation(independent_runs(evidence), group.dimension, level);
-    const Interval interval{group.run.mean / bounds.high, group.run.mean / bounds.low};
-    if (const Side side = side_of(interval, judgement.limits().margin); side != Side::inside)
-        judgement.add(side, {Subject::size, Fault{}, group.name, "over all steps", group.run.mean, interval,
-                             "NEES/dim"});
+    const auto judge_mean = [&](double mean, double runs, Side side) {
+        const Interval bounds = bounds_at_any_correlation(runs, group.dimension, level);
+        const Interval interval{mean / bounds.high, mean / bounds.low};
+        if (side_of(interval, judgement.limits().margin) != side) return false;
+        judgement.add(side, {Subject::size, Fault{}, group.name, "over all steps", mean, interval, "NEES/dim"});
+        return true;
+    };
+    const double runs = independent_runs(evidence);
+    if (judge_mean(group.run.mean, runs, Side::above) || judge_mean(group.run.mean, runs, Side::below)) return;
+    if (group.centred.count > 0) judge_mean(group.centred.mean, independent_segments(evidence), Side::above);
 }
 
 /// Of segments of that length.
@@ -129,40 +156,122 @@ std::string too_few(const Evidence& evidence) {
 
 }  // namespace
 
-Evidence by_segments(Evidence runs, Evidence segments) {
+namespace {
+
+/// Those series in which the runs differ by more than their segments say, the first of them. Few runs are compared
+/// without the offsets, in which they always differ.
+std::string differing_runs(const Evidence& segments, const std::vector<std::int64_t>& run, bool centred) {
+    if (!segments.moments) return {};
+    std::vector<SegmentSeries> all = series_of(segments, run);
+    if (centred) all.resize(segments.groups.size());
+    for (const SegmentSeries& series : all)
+        if (runs_differ(series, doubted / static_cast<double>(all.size()))) return series.name;
+    return {};
+}
+
+template <class Value>
+double largest_of(const Evidence& segments, const Value& value) {
+    double largest = 0;
+    for (std::size_t i = 0; segments.moments && i < segments.moments->trials(); ++i)
+        largest = std::fmax(largest, value(*segments.moments, i));
+    return largest;
+}
+
+}  // namespace
+
+Evidence by_segments(Evidence runs, Evidence segments, const std::optional<Evidence>& centred) {
+    segments.segments = runs.segments;
+    if (std::string differ = differing_runs(centred ? *centred : segments, runs.segments.run, centred.has_value());
+        !differ.empty()) {
+        runs.segments.differ = differ;
+        runs.segments.count = false;
+        runs.segments.run.clear();
+        return runs;
+    }
     for (std::size_t g = 0; g < runs.groups.size(); ++g) {
         runs.groups[g].run = segments.groups[g].run;
+        runs.groups[g].largest = largest_of(
+            segments, [&](const TrialMoments& moments, std::size_t i) { return moments.X(i, static_cast<int>(g)); });
         runs.groups[g].accuracy.ratio = segments.groups[g].accuracy.ratio;
         runs.groups[g].accuracy.ratio_ci95 = segments.groups[g].accuracy.ratio_ci95;
     }
     for (std::size_t i = 0; i < runs.charts.size(); ++i) runs.charts[i].run = segments.charts[i].run;
-    for (std::size_t j = 0; j < runs.bias.size(); ++j) runs.bias[j].run = segments.bias[j].run;
+    const std::vector<Drift> drifts = drifts_of(segments);
+    for (std::size_t j = 0; j < runs.bias.size(); ++j) {
+        BiasEvidence& bias = runs.bias[j];
+        bias.square = segments.bias[j].square;
+        if (bias.square.count > 0) bias.largest_square = largest_of(segments, [&](const TrialMoments& moments, std::size_t i) {
+                const int at = triangle_place(static_cast<int>(j), static_cast<int>(j));
+                return moments.S(i)[at] / moments.C(i)[at];
+            });
+        if (runs.trials >= runs_that_tell) continue;
+        bias.run = segments.bias[j].run;
+        if (j >= drifts.size()) continue;
+        bias.drift = drifts[j].size;
+        bias.drift_half_width = drifts[j].half_width;
+        if (centred) bias.centred = centred->bias[j].square;
+    }
+    if (centred) runs.centred = centred->moments;
     for (NisEvidence& nis : runs.nis)
         for (const NisEvidence& of_segments : segments.nis)
             if (of_segments.part == nis.part) {
                 nis.ratio = of_segments.ratio;
                 nis.ratio95 = of_segments.ratio95;
+                nis.run = of_segments.run;
             }
     runs.whiteness = std::move(segments.whiteness);
     runs.moments = std::move(segments.moments);
     return runs;
 }
 
+std::vector<Drift> drifts_of(const Evidence& segments) {
+    if (!segments.moments) return {};
+    const std::vector<SegmentSeries> all = series_of(segments, segments.segments.run);
+    const double level = doubted / static_cast<double>(all.size() - segments.groups.size());
+    std::vector<Drift> drifts;
+    for (std::size_t s = segments.groups.size(); s < all.size(); ++s) {
+        const Slopes slopes = slopes_of(all[s]);
+        const double left = slopes.left / slopes.degrees;
+        drifts.emplace_back();
+        if (!(slopes.degrees > 0) || !(left > 0) ||
+            !(slopes.explained / slopes.runs > left * f_upper_quantile(level, slopes.runs, slopes.degrees)))
+            continue;
+        drifts.back() = {slopes.largest, t_quantile(level, slopes.degrees) * std::sqrt(left * slopes.variance)};
+    }
+    return drifts;
+}
+
+Interval bounds_at_any_correlation(double runs, int dimension, double level) {
+    const double exponent = -2 * std::log(level) / (runs * dimension);
+    const auto solve = [&](double inside, double outside) {
+        for (int i = 0; i < 200; ++i) {
+            const double c = (inside + outside) / 2;
+            (c - 1 - std::log(c) < exponent ? inside : outside) = c;
+        }
+        return outside;
+    };
+    return {solve(1, 0), solve(1, 2 * (2 + exponent))};
+}
+
 void judge_segments(const Evidence& evidence, Judgement& judgement) {
+    if (evidence.has_offsets())
+        judgement.not_shown("what is drawn once in a run, such as an offset, is seen once in each: " +
+                                std::to_string(runs_that_tell) + " runs can tell",
+                            false);
     if (!evidence.moments) return;
-    const std::vector<SegmentSeries> all = series_of(evidence);
+    const std::vector<SegmentSeries> all = series_of(evidence, evidence.segments.run);
     const double level = doubted / static_cast<double>(all.size());
-    for (const SegmentSeries& series : all) {
+    for (const SegmentSeries& series : all)
         if (neighbours_are_alike(series, level))
             judgement.not_shown("segments of " + std::to_string(evidence.segments.steps) +
                                     " steps are not independent: " + series.name + " are alike in one and the next",
                                 false);
-        if (runs_differ(series, level))
-            judgement.not_shown("the runs differ among each other: " + series.name, false);
-    }
 }
 
 void judge_few_runs(const Evidence& evidence, Judgement& judgement) {
+    if (!evidence.segments.differ.empty() && evidence.trials < least_segments)
+        judgement.not_shown("the runs differ among each other, so that each counts as one: " + evidence.segments.differ,
+                            false);
     if (!evidence.segments.outnumber(evidence.trials)) return;
     if (!judgement.has_findings())
         for (std::size_t g = 0; g < evidence.groups.size(); ++g) judge_size_of_run(evidence, g, judgement);

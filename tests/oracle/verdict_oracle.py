@@ -3,6 +3,7 @@ bias, advice}.cpp. docs/statistics.md says what the rules are, and docs/theory/s
 
 numbers(e, P, groups)          what a study keeps of each trial: a few numbers per trial, and sums by step
 judge(numbers, limits, advise) the verdict, without failed trials: word, findings, what is missing, advice
+judge_runs(e, P, groups)       the verdict on runs that are counted by segments where these are more
 
 Every level is one-sided. N trials, K steps, n components; S and C are sums over the steps of a trial of e e' and P,
 both standardised by the standard deviations in P.
@@ -12,12 +13,12 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
-from scipy import stats
+from scipy import optimize, stats
 
 LEVEL_RUN, LEVEL_STEP, LEVEL_DIRECTION, LEVEL_BIAS = 0.03, 0.00125, 0.015, 0.0025  # false findings: together about 5 %
 UNSEEN = 0.135            # that more trials were missed than a finding allows for
 LEVEL_ACCEPT = 0.025      # each side of an acceptance: a two-sided 95 % interval
-DIRECTION_TRIALS = 200    # least number of trials for a claim about directions
+DIRECTION_TRIALS = 20     # least number of trials for a claim about directions
 FOLDS = 3                 # parts of the trials; a direction is found on the others
 ROUNDING_ERROR = 2.0**-48  # errors of at most this size are rounding: the component is known exactly
 ADVICE_TRIALS = 30        # least number of trials for an advice
@@ -47,6 +48,7 @@ class Numbers:
     step_sd: np.ndarray = None     # [group, step]
     index: np.ndarray = None       # [trial] in the study, where trials that failed are counted
     error_size: np.ndarray = None  # [n] largest |e| of all trials and steps
+    of_segments: bool = False      # the trials are segments of runs
 
     def __post_init__(self):
         if self.index is None:
@@ -200,6 +202,7 @@ class Verdict:
 def judge(x, limits=Limits(), advise=False):
     v = Verdict()
     find_nees(x, limits, v)
+    find_components(x, limits, v)
     if x.trials >= DIRECTION_TRIALS:
         find_directions(x, limits, v)
     find_bias(x, limits, v)
@@ -221,9 +224,13 @@ def beyond_chi_square(mean, degrees, side, level, margin):
     return mean / (1 - margin) * degrees < stats.chi2.ppf(level, degrees)
 
 
-def compare(v, kind, where, mean, sd, trials, degrees, level, margin, unseen=UNSEEN):
-    """Both sides of one figure."""
+def compare(v, kind, where, mean, sd, trials, degrees, level, margin, unseen=UNSEEN, largest=0, numbers=np.inf):
+    """Both sides of one figure. Of segments, one more like the largest may have been missed; of trials of few numbers,
+    what was missed is nine whatever the mean is."""
     low, high = lower(mean, sd, trials, level), upper(mean, sd, trials, level, unseen)
+    if numbers < 20:
+        high = upper(mean, sd, trials, level) + (1 - unseen ** (1 / trials)) * max(0, 9 - mean)
+    high += max(0, largest - mean) / trials
     if low > 1 + margin and beyond_chi_square(mean, degrees, "above", level, margin):
         v.findings.append((kind, where, "above", mean, low))
     if high < 1 - margin and beyond_chi_square(mean, degrees, "below", level, margin):
@@ -236,12 +243,27 @@ def degrees_over_steps(X, dimension, steps):
     return np.clip(2 * len(X) * (X.mean() / X.std(ddof=1)) ** 2, fewest, fewest * steps)
 
 
+def own_groups(x):
+    """The components that are groups beside those that are named."""
+    return [j for j in x.groups[0][1] if [j] not in [list(c) for _, c in x.groups]]
+
+
+def find_mean(x, X, kind, name, dimension, g, limits, v):
+    compare(v, kind, name, X.mean(), X.std(ddof=1), len(X), degrees_over_steps(X, dimension, x.steps),
+            share_of(LEVEL_RUN, g, len(x.groups) + len(own_groups(x))) / 2, limits.margin,
+            largest=X.max() if x.of_segments else 0, numbers=x.steps * dimension)
+
+
+def find_components(x, limits, v):
+    for place, j in enumerate(own_groups(x)):
+        if x.error_size[j] > ROUNDING_ERROR:
+            find_mean(x, x.squares[:, j, j] / x.predicted[:, j, j], "run", j, 1, len(x.groups) + place, limits, v)
+
+
 def find_nees(x, limits, v):
-    N, G = x.trials, len(x.groups)
+    N, G = x.trials, len(x.groups) + len(own_groups(x))
     for g, (name, c) in enumerate(x.groups):
-        X = x.run[:, g]
-        compare(v, "run", name, X.mean(), X.std(ddof=1), N, degrees_over_steps(X, len(c), x.steps),
-                share_of(LEVEL_RUN, g, G) / 2, limits.margin)
+        find_mean(x, x.run[:, g], "run", name, len(c), g, limits, v)
         for k in range(x.steps if x.step_mean is not None else 0):
             level = LEVEL_STEP / (2 * G * x.steps)
             compare(v, "step", (name, k), x.step_mean[g, k], x.step_sd[g, k], N, N * len(c), level, limits.margin,
@@ -252,14 +274,19 @@ def find_directions(x, limits, v):
     groups = [(name, c) for name, c in x.groups if len(c) >= 2]
     for g, (name, c) in enumerate(groups):
         level = share_of(LEVEL_DIRECTION, g, len(groups)) / 2
-        y, _ = crossed(x, c, -1, limits)
-        low = lower(y.mean(), y.std(ddof=1), x.trials, level)
-        if low > 1 + limits.margin:
-            v.findings.append(("direction", name, "above", y.mean(), low))
-        y, _ = crossed(x, c, 0, limits)
-        high = upper(y.mean(), y.std(ddof=1), x.trials, level, UNSEEN)
-        if high < 1 - limits.margin:
-            v.findings.append(("direction", name, "below", y.mean(), high))
+        for which in (-1, 0):
+            found = direction_found(x, crossed(x, c, which, limits)[0], which, level, limits)
+            if found:
+                v.findings.append(("direction", name, *found))
+
+
+def direction_found(x, y, which, level, limits):
+    """The claim on the numbers y of a direction, as of a group of one component."""
+    one = Verdict()
+    compare(one, "", "", y.mean(), y.std(ddof=1), x.trials, degrees_over_steps(y, 1, x.steps), level, limits.margin,
+            largest=y.max() if x.of_segments else 0, numbers=x.steps)
+    side = "above" if which == -1 else "below"
+    return next((finding[2:] for finding in one.findings if finding[2] == side), None)
 
 
 def known_exactly(x, j, limits):
@@ -301,6 +328,129 @@ def accept(x, limits, v):
     if len(x.groups[0][1]) > 1 and not accepts_directions(x, limits):
         v.missing.append(("direction", x.groups[0][0]))
     v.missing += [("bias", j) for j in range(x.bias.shape[1]) if not accepts_bias(x, j, limits)]
+
+
+# Runs by segments
+
+MOST_RUNS, RUNS_THAT_TELL, LEAST_SEGMENTS, MOST_SEGMENTS, DOUBTED = 200, 5, 20, 4096, 0.01
+ONE_DRAW = 3.2            # a mean error of runs that were drawn once each is below this many sigmas, over their root
+
+
+def autocorrelation_time(values):
+    """Sokal's, of a series about 0."""
+    K = len(values)
+    time = 0.5
+    for lag in range(1, K // 2 + 1):
+        time += (values[:-lag] * values[lag:]).sum() / (values**2).sum()
+        if lag >= 5 * time:
+            return max(time, 0.5)
+    return np.inf
+
+
+def without_trend(values, degree):
+    t = np.linspace(-1, 1, len(values))
+    return values - np.polyval(np.polyfit(t, values, degree), t)
+
+
+def longest_time(z, nees):
+    """z [run, step, n], nees [group, run, step]. Of few runs an offset and a drift are not correlation."""
+    few = len(z) < RUNS_THAT_TELL
+    series = [without_trend(one, 1) if few else one for run in z for one in run.T]
+    series += [without_trend(one, 2) if few else one - one.mean() for group in nees for one in group]
+    return max(autocorrelation_time(one) for one in series)
+
+
+def segment_length(time, runs, steps):
+    """0 where segments do not count."""
+    count = lambda length: runs * (steps // length)  # noqa: E731
+    if runs > MOST_RUNS or not np.ceil(10 * time) / 2 <= steps:
+        return 0
+    length, shortest = int(max(np.ceil(10 * time), np.ceil(runs * steps / MOST_SEGMENTS))), int(np.ceil(np.ceil(10 * time) / 2))
+    length, parts = min(length, steps), 1
+    while count(length) < LEAST_SEGMENTS and length > shortest:
+        length, parts = min(length, max(steps // parts, shortest)), parts + 1
+    return length if count(length) >= max(LEAST_SEGMENTS, 2 * runs) else 0
+
+
+def cut(values, length):
+    """[run, step, ...] as [segment, step, ...]."""
+    runs, steps = values.shape[:2]
+    count = steps // length
+    return values[:, : count * length].reshape(runs * count, length, *values.shape[2:])
+
+
+def runs_differ(values, runs, level):
+    """One number a segment, as many of each run."""
+    of = values.reshape(runs, -1)
+    return runs > 1 and stats.f_oneway(*of).pvalue < level
+
+
+def drifts(values, runs, level):
+    """Whether the lines through the segments of each run explain more than chance."""
+    of = values.reshape(runs, -1)
+    left = sum((without_trend(one, 1) ** 2).sum() for one in of)
+    explained = sum(((one - one.mean()) ** 2).sum() for one in of) - left
+    degrees = of.size - 2 * runs
+    return explained / runs > left / degrees * stats.f.isf(level, runs, degrees)
+
+
+def explained(finding, x, runs, limits):
+    """Whether a NEES/dim that is too small, or a direction, may be due to what was drawn once in each run: Chernoff."""
+    kind, where, _, mean, _ = finding
+    if kind != "run":
+        return True
+    names, own = [name for name, _ in x.groups], own_groups(x)
+    g = names.index(where) if where in names else len(names) + own.index(where)
+    d = len(x.groups[g][1]) if g < len(names) else 1
+    level = share_of(LEVEL_RUN, g, len(names) + len(own)) / 2
+    least = optimize.brentq(lambda c: runs * d / 2 * (c - 1 - np.log(c)) + np.log(level), 1e-300, 1)
+    return mean / least >= 1 - limits.margin
+
+
+def about_means(e, P, length, drifting):
+    """Errors about the mean of their run or, of a component that drifts, of their segment, weighted by 1/P_jj."""
+    w = 1 / np.einsum("rkii->rki", P)
+    mean = lambda e, w: (e * w).sum(1, keepdims=True) / w.sum(1, keepdims=True)  # noqa: E731
+    return np.where(drifting, cut(e, length) - mean(cut(e, length), cut(w, length)), cut(e - mean(e, w), length))
+
+
+def judge_runs(e, P, groups, limits=Limits()):
+    """e [run, step, n], P [run, step, n, n]. Returns the verdict and the length of segments, 0 where runs count."""
+    R, K, n = e.shape
+    of_runs = numbers(e, P, groups)
+    sigma = np.sqrt(np.einsum("rkii->rki", P))
+    correlations = P / (sigma[..., :, None] * sigma[..., None, :])
+    z = e / sigma
+    length = segment_length(longest_time(z, [nees_of(z, correlations, c) for _, c in groups]), R, K)
+    if not length:
+        return judge(of_runs, limits), 0
+    x = numbers(cut(e, length), cut(P, length), groups)
+    few = R < RUNS_THAT_TELL
+    drifting = np.array([few and drifts(x.bias[:, j], R, DOUBTED / n) for j in range(n)])
+    about = numbers(about_means(e, P, length, drifting), cut(P, length), groups) if few else x
+    compared = list(about.run.T) + ([] if few else list(x.bias.T))
+    if any(runs_differ(one, R, DOUBTED / (len(groups) + n)) for one in compared):
+        return judge(of_runs, limits), 0
+    x.of_segments, x.step_mean = True, None
+    v = Verdict()
+    for numbers_, side in ((about, "above"), (x, "below")):
+        one = Verdict()
+        find_nees(numbers_, limits, one), find_components(numbers_, limits, one)
+        find_directions(numbers_, limits, one)
+        v.findings += [f for f in one.findings if f[2] == side and not (few and side == "below" and explained(f, x, R, limits))]
+    steps = Verdict()
+    find_nees(of_runs, limits, steps)
+    v.findings += [f for f in steps.findings if f[0] == "step"]
+    one = Verdict()
+    find_bias(x if few else of_runs, limits, one)
+    v.findings += [f for f in one.findings if not few or f[4] > ONE_DRAW / np.sqrt(R)]
+    if few:
+        v.missing.append("what is drawn once in a run")
+    accept(x, limits, v)
+    above, below = (any(f[2] == side for f in v.findings) for side in ("above", "below"))
+    v.word = ("mixed" if above and below else "optimistic" if above else "pessimistic" if below
+              else "undecided" if v.missing else "consistent")
+    return v, length
 
 
 # Advice

@@ -150,8 +150,8 @@ TEST_CASE("record: singular and indefinite covariances fail their trial and are 
 
 TEST_CASE("record: what is not finite, and what is NaN in the error or the covariance alone, fails its trial") {
     const Record record = check_reference("broken");
-    CHECK(record.trouble_count == 11);
-    CHECK(record.results.arms.front().totals.trials.counted() == 9);
+    CHECK(record.trouble_count == 10);  // an error of 2e12 is not lost in so short a trial
+    CHECK(record.results.arms.front().totals.trials.counted() == 10);
 }
 
 TEST_CASE("record: trials that end before the longest one, and do not say so, fail") {

@@ -79,10 +79,12 @@ def one_direction(x, c, which, level, limits):
     _, v = extreme(x, c, which, limits)
     low = lower(y.mean(), y.std(ddof=1), x.trials, level)
     high = upper(y.mean(), y.std(ddof=1), x.trials, level, UNSEEN)
+    if x.steps < 20:
+        high = upper(y.mean(), y.std(ddof=1), x.trials, level) + (1 - UNSEEN ** (1 / x.trials)) * max(0, 9 - y.mean())
     entries = named(v, c)
     return {"components": list(entries), "weights": list(entries.values()), "ratio": y.mean(), "bounds": [low, high],
             "approximate": is_approximate(folds, v, part_of(x.predicted, c)),
-            "finding": low > 1 + limits.margin if which == -1 else high < 1 - limits.margin}
+            "finding": direction_found(x, y, which, level, limits) is not None}
 
 
 def verdict_on_directions(x, limits):

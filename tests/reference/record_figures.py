@@ -64,11 +64,11 @@ class Expected:
         self.set_lost_aside()
 
     def set_lost_aside(self):
-        """Unless more than half are lost."""
+        """Unless more than half are lost. A trial of fewer than 20 numbers is not."""
         nees = self.values["nees", "all"]
         ratio = np.full(self.trials, np.nan)
         ratio[~self.failed] = np.nanmean(nees[~self.failed], axis=1) / self.n
-        lost = np.flatnonzero(ratio > 25)
+        lost = np.flatnonzero((ratio > 25) & (self.there.sum(axis=1) * self.n >= 20))
         if 2 * len(lost) > (~self.failed).sum():
             return
         self.troubles += [[trial, int(np.nanargmax(nees[trial])),

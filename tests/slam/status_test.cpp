@@ -102,7 +102,7 @@ TEST_CASE("status: a trial whose NEES/n is beyond 25 is lost, and keeps its colu
     CHECK(columns == run.columns);
     for (const double ratio : {lost_nees_ratio, std::nextafter(lost_nees_ratio, infinity)}) {
         Outcome<double> outcome;
-        outcome.note_lost(ratio);
+        outcome.note_lost(ratio, least_lost_numbers);
         CHECK(outcome.status == (ratio > lost_nees_ratio ? lost : completed));
         CHECK(outcome.pose == -1);
     }
@@ -125,7 +125,7 @@ TEST_CASE("status: a trial that would be lost may fail, and a trial that failed 
     CHECK(outcome.status == completed);
     outcome.note(true, Status::covariance_not_positive_definite, 4);
     outcome.note(true, Status::non_finite, 5);
-    outcome.note_lost(1e9);
+    outcome.note_lost(1e9, least_lost_numbers);
     CHECK(outcome.status == not_positive_definite);
     CHECK(outcome.pose == 4);
 }

@@ -33,7 +33,7 @@ struct Halves {
 
 const bool halves_added = (add_own_world<Halves>(), true);
 
-const std::string scenario_file = "[scenario]\nworld = halves\nposes = 10\n";
+const std::string scenario_file = "[scenario]\nworld = halves\nposes = 12\n";
 constexpr int trials = 4000;
 
 }  // namespace

@@ -49,6 +49,7 @@ NisEvidence nis_of(double ratio, double half_width) {
     nis.ratio = ratio;
     nis.ratio95 = {ratio - half_width, ratio + half_width};
     nis.scale95 = nis.ratio95;
+    nis.run = {4000, ratio, half_width / 1.96 * std::sqrt(4000.0), half_width / 1.96};
     return nis;
 }
 
@@ -77,7 +78,7 @@ TEST_CASE("consistency: innovations of the wrong size are noted where the state 
     CHECK(verdict.verdict == Verdict::consistent);
     REQUIRE(verdict.cautions.size() == 1);
     CHECK(sentence(verdict.cautions.front()) ==
-          "optimistic: innovations (all), over all steps, NIS/m 3.9 (3.7 to 4.1)");
+          "optimistic: innovations (all), over all steps, NIS/m 3.9 (3.68 to 4.14)");
     evidence.nis = {nis_of(1.05, 0.02)};  // beyond the margin, but not for sure
     CHECK(judge(evidence, 0.05).cautions.empty());
 }

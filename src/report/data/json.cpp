@@ -1,5 +1,7 @@
 #include "report/data/json.hpp"
 
+#include "base/nan.hpp"
+
 #include <credence/consistency.hpp>
 #include <credence/text.hpp>
 
@@ -90,6 +92,7 @@ Json whiteness_json(const Whiteness& lag) {
 
 Json bias_json(const BiasEvidence& bias) {
     return {{"component", bias.component},
+            {"nees_per_dimension", bias.square.count > 0 ? bias.square.mean : nan},
             {"mean", each_json(bias.step, [](const Moments& step) { return step.mean; })},
             {"se", each_json(bias.step, [](const Moments& step) { return step.standard_error; })}};
 }

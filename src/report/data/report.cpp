@@ -206,6 +206,8 @@ public:
             add("whiteness:" + std::to_string(lag.lag), lag.scaled, nan,
                 {lag.scaled - lag.bound, lag.scaled + lag.bound});
         for (const BiasEvidence& bias : arm_.evidence.bias)
+            if (bias.square.count > 0) add_moments("nees_per_dimension:" + bias.component, bias.square);
+        for (const BiasEvidence& bias : arm_.evidence.bias)
             for (std::size_t k = 0; k < bias.step.size(); ++k)
                 add_moments("mean_standardised_error:" + bias.component + ":" + std::to_string(k + 1), bias.step[k]);
         for (const DirectionOfGroup& one : arm_.consistency.directions.largest)

@@ -40,7 +40,7 @@ double form(const VectorXd& v, const MatrixXd& matrix) { return v.dot(matrix * v
 PositiveSample linearised_ratio(const VectorXd& a, const VectorXd& b, double ratio, double trials) {
     const VectorXd y = (ratio + (a - ratio * b).array() / b.mean()).matrix();
     const double squares = (y.array() - y.mean()).square().sum();
-    return {trials, ratio, std::sqrt(squares / static_cast<double>(y.size() - 1))};
+    return {trials, ratio, std::sqrt(squares / static_cast<double>(y.size() - 1)), y.maxCoeff()};
 }
 
 /// The same direction v for every trial.
@@ -128,8 +128,11 @@ GroupDirections find_directions(const GroupMoments& group, const FoldSums& sums,
     found.state = GroupDirections::State::known;
     for (const bool largest : {true, false}) {
         const FoldDirections folds{others[0].of(largest), others[1].of(largest), others[2].of(largest)};
-        const PositiveSample sample = crossed_ratio(folds, group, sums);
-        const MeanClaim claim = claim_on_mean(sample, level, limits.margin);
+        PositiveSample sample = crossed_ratio(folds, group, sums);
+        if (!limits.of_segments) sample.largest = 0;
+        sample.of_few_numbers = limits.steps < many_numbers;
+        const MeanClaim claim =
+            claim_on_nees(sample, degrees_over_steps(sample, 1, limits.steps), level, limits.margin);
         const VectorXd v = all.of(largest);
         Direction& direction = largest ? found.largest : found.smallest;
         direction.entries = entries_of(v, group.components);

@@ -14,11 +14,13 @@
 namespace credence {
 
 /// Least number of trials for a claim about directions.
-inline constexpr double direction_trials = 200;
+inline constexpr double direction_trials = 20;
 
 struct DirectionLimits {
     double margin = 0.05;                                     ///< findings lie outside 1 -+ margin
     double epsilon = std::numeric_limits<double>::epsilon();  ///< of the data's type; 2^-23 for 32 bits
+    double steps = 1;                                         ///< of a trial
+    bool of_segments = false;                                 ///< trials are segments of runs [PositiveSample]
 };
 
 /// One component's share in a direction, in units of its sigma.
