@@ -4,21 +4,18 @@
 //
 //   verdict_rates [SHARE]      SHARE of the studies, 1 by default
 
-#include "filters.hpp"
-
-
+#include <algorithm>
+#include <boost/math/distributions/binomial.hpp>
+#include <cmath>
 #include <credence/consistency.hpp>
 #include <credence/record.hpp>
 #include <credence/statistics.hpp>
-
-#include <boost/math/distributions/binomial.hpp>
-
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <vector>
+
+#include "filters.hpp"
 
 namespace credence::rates {
 
@@ -29,7 +26,8 @@ Consistency judged(const Filter& filter, std::uint64_t seed, int trials) {
     const auto steps = static_cast<std::int64_t>(filter.covariance.size());
     const std::int64_t n = filter.groups.front().count, m = filter.rows;
     std::vector<double> errors, covariances, innovations;
-    for (const Eigen::MatrixXd& P : filter.covariance) covariances.insert(covariances.end(), P.data(), P.data() + n * n);
+    for (const Eigen::MatrixXd& P : filter.covariance)
+        covariances.insert(covariances.end(), P.data(), P.data() + n * n);
     for (std::int64_t i = 0; i < trials; ++i) {
         const Trial trial = filter.trial(Draws(seed, i));
         errors.insert(errors.end(), trial.error.data(), trial.error.data() + steps * n);

@@ -6,13 +6,11 @@
 // Errors of n components are autoregressions with variance 1 and P = 1, times what a row says. A share of the variance
 // is drawn once a run; a study is R runs of K steps.
 
-#include <credence/consistency.hpp>
-#include <credence/record.hpp>
-
 #include <Eigen/Core>
-
 #include <algorithm>
 #include <cmath>
+#include <credence/consistency.hpp>
+#include <credence/record.hpp>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -54,7 +52,7 @@ struct Study {
     double first_factor = 1;  ///< on the variance in P of the first component
     double known = 0;         ///< correlation of the first two components, which P knows
     Draw draw = normal;
-    bool by_trial = false;    ///< one scale a run: `draw` scales its normal errors
+    bool by_trial = false;  ///< one scale a run: `draw` scales its normal errors
     bool of_innovations = false;
 };
 
@@ -85,9 +83,10 @@ Drawn drawn(const Study& study, Generator& generator) {
                 e[j] = scale * (std::sqrt(1 - once) * x[j] + std::sqrt(once) * fixed[j]);
             }
             if (n > 1) e[1] = study.known * e[0] + std::sqrt(1 - study.known * study.known) * e[1];
-            e[x.size() - 1] = study.correlation * e[0] + std::sqrt(1 - study.correlation * study.correlation) * e[x.size() - 1];
+            double& last = e[x.size() - 1];
+            last = study.correlation * e[0] + std::sqrt(1 - study.correlation * study.correlation) * last;
             e[0] += study.offset;
-            e[x.size() - 1] += study.drift * (k / std::max(1.0, study.steps - 1.0) - 0.5);
+            last += study.drift * (k / std::max(1.0, study.steps - 1.0) - 0.5);
             of.errors.insert(of.errors.end(), e.begin(), e.end());
         }
     }
@@ -106,8 +105,9 @@ Outcome judged(const Study& study, std::uint64_t seed) {
     constexpr RecordArray::Type real = RecordArray::Type::real64;
     RecordArrays record;
     const bool alone = study.of_innovations;
-    record.arrays = {{alone ? "innovation" : "error", drawn_.errors.data(), real, {study.runs, steps, n}, {steps * n, n, 1}},
-                     {alone ? "innovation_covariance" : "covariance", drawn_.P.data(), real, {study.runs, steps, n, n}, {0, 0, n, 1}}};
+    const std::string error = alone ? "innovation" : "error", P = alone ? "innovation_covariance" : "covariance";
+    record.arrays = {{error, drawn_.errors.data(), real, {study.runs, steps, n}, {steps * n, n, 1}},
+                     {P, drawn_.P.data(), real, {study.runs, steps, n, n}, {0, 0, n, 1}}};
     Outcome outcome;
     outcome.evidence = evidence_of(read_record(record, "study"));
     outcome.verdict = judge(outcome.evidence, Limits());
@@ -117,7 +117,9 @@ Outcome judged(const Study& study, std::uint64_t seed) {
 /// Counts words over the studies of a cell, each with seeds of its own.
 class Table {
 public:
-    Table(int studies, const char* head, const std::string& only = {}) : studies_(studies), only_(only) { std::printf("%s\n", head); }
+    Table(int studies, const char* head, const std::string& only) : studies_(studies), only_(only) {
+        std::printf("%s\n", head);
+    }
 
     void row(const std::string& name, const Study& study) {
         ++cells_;
@@ -144,7 +146,8 @@ private:
     std::uint64_t cells_ = 1;
 };
 
-constexpr const char* columns = "errors,components,runs,steps,\"segments, mean\",studies,too large,too small,with a note,consistent";
+constexpr const char* columns =
+    "errors,components,runs,steps,\"segments, mean\",studies,too large,too small,with a note,consistent";
 
 /// The same filter in 1 to 300 runs, about the number at which runs alone used to count.
 void print_units(int studies, const std::string& only) {
@@ -284,11 +287,18 @@ int main(int argument_count, char** arguments) {
     const std::string table = argument_count > 1 ? arguments[1] : "";
     const int studies = argument_count > 2 ? std::atoi(arguments[2]) : 60;
     const std::string only = argument_count > 3 ? arguments[3] : "";
-    if (table == "units") print_units(studies, only);
-    else if (table == "right") print_right(studies, only);
-    else if (table == "logs") print_logs(studies, only);
-    else if (table == "short") print_short(studies, only);
-    else if (table == "components") print_components(studies, only);
-    else if (table == "innovations") print_innovations(studies, only);
-    else return std::fprintf(stderr, "usage: verdict_runs units|right|logs|short|components|innovations [STUDIES]\n"), 2;
+    if (table == "units")
+        print_units(studies, only);
+    else if (table == "right")
+        print_right(studies, only);
+    else if (table == "logs")
+        print_logs(studies, only);
+    else if (table == "short")
+        print_short(studies, only);
+    else if (table == "components")
+        print_components(studies, only);
+    else if (table == "innovations")
+        print_innovations(studies, only);
+    else
+        return std::fprintf(stderr, "usage: verdict_runs units|right|logs|short|components|innovations [STUDIES]\n"), 2;
 }

@@ -35,11 +35,11 @@ bool too_many_failed(std::int64_t failed, std::int64_t trials, double share);
 
 /// What a finding or a caution is about.
 enum class Subject {
-    size,          ///< NEES/dimension over all steps
-    step,          ///< NEES/dimension at single steps
-    direction,     ///< the squared error of a linear combination of components
+    size,       ///< NEES/dimension over all steps
+    step,       ///< NEES/dimension at single steps
+    direction,  ///< the squared error of a linear combination of components
     bias,
-    innovations,   ///< NIS/m
+    innovations,  ///< NIS/m
     whiteness,
     distribution,  ///< of NEES, against chi-square
     tenth,         ///< mean errors over a tenth of the steps
@@ -123,8 +123,8 @@ struct Consistency {
     Verdict verdict = Verdict::undecided;
     Limits limits;
     std::vector<Finding> findings;   ///< evidence against consistency
-    /// Notes of what is no finding. Cautions that do not concern the size of P: innovations that are correlated, errors whose distribution is not
-    /// normal. The verdict does not depend on them, except for that on a single trial.
+    /// What is no finding: offsets and drifts of few runs, and what does not concern the size of P, such as innovations
+    /// that are correlated, or errors whose distribution is not normal. The verdict does not depend on them.
     std::vector<Finding> cautions;
     DirectionsFound directions;
     Reached reached;

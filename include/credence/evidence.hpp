@@ -5,7 +5,6 @@
 #include <credence/detail/credibility.hpp>
 #include <credence/detail/results.hpp>
 #include <credence/statistics.hpp>
-
 #include <limits>
 #include <memory>
 #include <optional>
@@ -56,8 +55,8 @@ struct GroupEvidence {
     /// Bound on what rounding may have done to NEES, as a share of it [statistics/moments/conditioning.hpp]; 0 where
     /// unknown.
     double rounding = 0;
-    double largest = 0;                        ///< of `run`'s numbers, where they are of segments; else 0
-    Moments centred;                           ///< as `run`, with errors about their mean [Evidence::centred]
+    double largest = 0;  ///< of `run`'s numbers, of the detailed trials
+    Moments centred;     ///< as `run`, with errors about their mean [Evidence::centred]
 };
 
 /// NEES of a component group with its error in another chart and the same covariance [docs/estimators.md, NEES]: shown
@@ -102,7 +101,7 @@ struct BiasEvidence {
     /// Of its squared standardised error, of the detailed trials, averaged over each one's steps: NEES of a group of
     /// its own. None where a group is this component alone. `centred`: with errors about their mean.
     Moments square{}, centred{};
-    double largest_square = 0;                 ///< of `square`'s numbers, where they are of segments; else 0
+    double largest_square = 0;  ///< of `square`'s numbers
     /// In sigmas, from the start to the end of the run in which it is largest; 0 where none is shown.
     double drift = 0, drift_half_width = 0;
 };
@@ -184,7 +183,7 @@ struct Evidence {
     /// The same with errors about the mean of their run, or of their segment where a drift is shown, where segments of
     /// fewer than `runs_that_tell` runs count; else null.
     std::shared_ptr<const TrialMoments> centred;
-    bool of_innovations = false;               ///< innovations stand for errors
+    bool of_innovations = false;                              ///< innovations stand for errors
     double epsilon = std::numeric_limits<double>::epsilon();  ///< relative spacing of the numbers of covariances
     SegmentEvidence segments;
     bool joint = true;                         ///< false: of a record without a covariance of the whole state

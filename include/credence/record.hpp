@@ -91,7 +91,7 @@ struct Record {
     ScenarioResults results;
     int every = 1;  ///< which steps the results by step have: all up to 99,999, of longer runs some 10,000
     bool has_innovations = false;
-    bool of_innovations = false;  ///< which stand for errors
+    bool of_innovations = false;          ///< which stand for errors
     std::vector<RecordTrouble> troubles;  ///< the first 20
     std::int64_t trouble_count = 0;       ///< trials that failed
     RecordGaps gaps{};

@@ -185,7 +185,7 @@ def judge(asked: _Asked) -> Verdict:
     failed : float or str
         The verdict is ``failed`` where more than this share of the runs failed.
     segments : int or str
-        Fewer than 20 runs are counted by segments, which take the place of runs: ``"auto"`` makes them ten times as
+        Up to 200 runs are counted by segments, which take the place of runs: ``"auto"`` makes them ten times as
         long as errors take to decorrelate [docs/statistics.md, One log], a number says their steps, ``"off"``: none.
     name : str
         What the report calls the record.

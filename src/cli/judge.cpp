@@ -33,7 +33,7 @@ const Command& judge_command() {
         "is 1\nif the filter is refuted: `undecided` passes.\n",
         verdict_options({{"segments", "STEPS",
                           "count few long runs by segments of so many steps; off; or auto (the default): ten times the "
-                          "steps over which errors decorrelate, for fewer than 20 runs"},
+                          "steps over which errors decorrelate, for up to 200 runs"},
                          {"quiet", "", "no progress"}})};
     return command;
 }

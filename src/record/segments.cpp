@@ -1,13 +1,13 @@
 #include "record/segments.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
 #include "record/presence.hpp"
 #include "record/read.hpp"
 #include "record/totals.hpp"
 #include "statistics/autocorrelation.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
 
 namespace credence {
 
@@ -37,7 +37,8 @@ SegmentPlanner::SegmentPlanner(const RecordShape& shape, int asked)
 
 /// The autocorrelation of NEES is about its own mean, since P may have the wrong size; that of a standardised error
 /// about 0, the mean of a filter that is right: an offset that was drawn once does not decorrelate. Of too few runs to
-/// tell such an offset from a bias, it is about the run's mean and its drift, a line, and that of NEES about a parabola.
+/// tell such an offset from a bias, it is about the run's mean and its drift, a line, and that of NEES about a
+/// parabola.
 void SegmentPlanner::add(std::int64_t run, const std::vector<std::size_t>& present,
                          const std::vector<Series>& all_series,
                          const std::function<double(std::size_t f, std::size_t k)>& value) {
@@ -95,15 +96,14 @@ void SegmentPlanner::choose_length() {
     double longest = 0;
     for (const auto& [run, present] : uncut_)
         longest = std::max(longest, static_cast<double>(present.back() - present.front() + 1));
-    const double time = found_.autocorrelation_time,
-                 most = detailed_trials(1, n_), all = static_cast<double>(found_.steps_of_runs);
+    const double time = found_.autocorrelation_time, most = detailed_trials(1, n_),
+                 all = static_cast<double>(found_.steps_of_runs);
     const double length = std::max(independent_steps(time), std::ceil(all / most)),
                  shortest = std::ceil(independent_steps(time) / 2);
     if (!(time > 0) || !(shortest <= longest)) return;
     cut_all(std::min(length, longest));
     for (double parts = 1; std::ssize(found_.run) < least_segments && found_.steps > shortest; ++parts)
-        if (const double steps = std::floor(longest / parts); steps < found_.steps)
-            cut_all(std::max(steps, shortest));
+        if (const double steps = std::floor(longest / parts); steps < found_.steps) cut_all(std::max(steps, shortest));
 }
 
 RecordSegments SegmentPlanner::finish(const RecordReader& reader, const std::string& name) {
@@ -175,8 +175,7 @@ ScenarioResults SegmentPlanner::results(const RecordReader& reader, const std::s
     each_step(reader, [&](const RecordStep& one) {
         const bool inside = next < first_.size() && one.trial == found_.run[next] && one.step >= first_[next];
         if (adds && one.step == 0) presence.start_trial();
-        if (adds && reader.shape().covers(one.trial, one.step) &&
-            presence.check(one, checked) == Presence::there)
+        if (adds && reader.shape().covers(one.trial, one.step) && presence.check(one, checked) == Presence::there)
             add_errors(checked, means->of_run[static_cast<std::size_t>(one.trial)],
                        inside ? &means->of_segment[next] : nullptr);
         if (!inside) return;

@@ -206,8 +206,7 @@ void RecordTotals::add_columns(std::int64_t trial) {
             row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_group(shape_));
         }
         row[RecordColumn::nees_ratio] = over_steps(0) / count(0) / shape_.n;
-        if (row[RecordColumn::nees_ratio] > lost_nees_ratio &&
-            std::ssize(present_) * shape_.n >= least_lost_numbers)
+        if (row[RecordColumn::nees_ratio] > lost_nees_ratio && std::ssize(present_) * shape_.n >= least_lost_numbers)
             note_lost(trial, row[RecordColumn::nees_ratio]);
         row[RecordColumn::nis_ratio] =
             record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;

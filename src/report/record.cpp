@@ -154,9 +154,11 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     arm.curves = std::move(record.curves);
     if (arm.evidence.segments.count) {
         set_means(*record.segments.results, arm);
-        if (arm.evidence.of_few_runs()) report.not_judged.push_back(
-            "What is drawn once in a run, such as a constant bias, the map or the start, is seen once in each: so few "
-            "runs cannot show whether P is right about it.");
+        if (arm.evidence.of_few_runs())
+            report.not_judged.push_back(
+                "What is drawn once in a run, such as a constant bias, the map or the start, is seen once in each: so "
+                "few "
+                "runs cannot show whether P is right about it.");
     }
     arm.every = record.every;
     if (arm.every > 1) {

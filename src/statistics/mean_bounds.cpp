@@ -30,6 +30,7 @@ double upper_bound(const PositiveSample& sample, double level) { return sample.m
 
 MeanClaim claim_on_mean(const PositiveSample& sample, double level, double margin, double unseen) {
     const double size = sample.of_few_numbers ? unseen_size - sample.mean : (unseen_size - 1) * sample.mean;
+    if (sample.of_few_numbers) unseen = std::min(unseen, levels::unseen_of_few);
     const double missed = unseen_share(unseen, sample.trials) * std::max(0.0, size) +
                           std::max(0.0, sample.largest - sample.mean) / sample.trials;
     MeanClaim claim;

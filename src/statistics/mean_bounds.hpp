@@ -17,6 +17,7 @@ inline constexpr double acceptance = 0.025;  ///< each side of an acceptance, no
 /// That a larger share of trials was missed than findings over the steps and in directions allow for, 2/N: as large as
 /// the rates of false findings permit [docs/theory/statistics.md, Calibration and power].
 inline constexpr double unseen = 0.135;
+inline constexpr double unseen_of_few = 0.01;  ///< of trials of few numbers [PositiveSample]
 }  // namespace levels
 
 /// The level of group g of `groups`: half for the whole state (group 0), half equally among the others; all, for one.
@@ -25,8 +26,8 @@ double level_of_group(double level, int g, int groups);
 /// What is known of N positive numbers.
 struct PositiveSample {
     double trials = 0, mean = 0, standard_deviation = 0;  ///< N; sd with N - 1
-    /// The largest of them, where they are of segments of runs: beside the unseen share, one more like it may have been
-    /// missed. 0: not so.
+    /// The largest of them, where they are of segments of runs or of few numbers: beside the unseen share, one more
+    /// like it may have been missed. 0: not so.
     double largest = 0;
     /// Each is the mean of so few numbers, steps times components, that the law of small errors matters: a trial that
     /// was not seen may have an error of three sigma by P, however small the others are.

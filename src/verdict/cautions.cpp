@@ -43,7 +43,8 @@ void caution_about_innovations(const Evidence& evidence, Consistency& verdict) {
     for (std::size_t i = 0; i < evidence.nis.size(); ++i) {
         const NisEvidence& nis = evidence.nis[i];
         const PositiveSample sample = positive_sample(nis.run);
-        const double level = level_of_group(levels::run, static_cast<int>(i), static_cast<int>(evidence.nis.size())) / 2,
+        const double level =
+                         level_of_group(levels::run, static_cast<int>(i), static_cast<int>(evidence.nis.size())) / 2,
                      degrees = std::min(nis.degrees, degrees_over_steps(sample, 1, nis.degrees / sample.trials));
         const MeanClaim claim = claim_on_nees(sample, degrees, level, verdict.limits.margin);
         if (claim.above || claim.below)

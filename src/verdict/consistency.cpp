@@ -53,13 +53,14 @@ private:
         for (std::size_t k = 0; k < group_.step.size(); ++k) {
             if (!(group_.step[k].count > 1)) continue;
             const double level = levels::step / tests / 2;
-            const MeanClaim claim =
-                claim_on_nees(positive_sample(group_.step[k]), group_.anees.degrees[k], level, margin(), level);
+            PositiveSample sample = positive_sample(group_.step[k]);
+            sample.of_few_numbers = group_.dimension < many_numbers;
+            const MeanClaim claim = claim_on_nees(sample, group_.anees.degrees[k], level, margin(), level);
             if (claim.above || claim.below) found[claim.above ? 0 : 1].add(k, group_.step[k].mean, claim.bounds);
         }
         for (const Side side : {Side::above, Side::below})
             if (const Found& steps = found[side == Side::above ? 0 : 1]; !steps.steps.empty()) {
-                const Finding finding{Subject::step, fault_of(side),  group_.name, steps_text(steps.steps),
+                const Finding finding{Subject::step, fault_of(side), group_.name, steps_text(steps.steps),
                                       steps.value,   steps.interval, "NEES/dim"};
                 is_note() ? judgement_.note(finding) : judgement_.add(side, finding);
             }
@@ -197,8 +198,8 @@ const std::string& fault_name(Fault fault) {
 }
 
 const std::string& subject_name(Subject subject) {
-    static const std::string names[] = {"size",        "step",      "direction",   "bias",
-                                        "innovations", "whiteness", "distribution", "tenth", "calibration", "offset"};
+    static const std::string names[] = {"size",      "step",         "direction", "bias",        "innovations",
+                                        "whiteness", "distribution", "tenth",     "calibration", "offset"};
     return names[static_cast<int>(subject)];
 }
 

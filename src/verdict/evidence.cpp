@@ -159,15 +159,31 @@ Moments moments_of_trials(const TrialMoments& trials, const Value& value) {
     return moments_of(exact_moments(values));
 }
 
-/// NEES of each component by itself, but for those that are groups.
+template <class Value>
+double largest_of(const TrialMoments& trials, const Value& value) {
+    double largest = 0;
+    for (std::size_t i = 0; i < trials.trials(); ++i) largest = std::fmax(largest, value(i));
+    return largest;
+}
+
+/// NEES of each component by itself, but for those that are groups; and the largest trials.
 void add_squares(Evidence& evidence) {
-    if (!evidence.moments || std::ssize(evidence.bias) != evidence.moments->components) return;
-    for (std::size_t j = 0; j < evidence.bias.size(); ++j) {
-        const std::vector<int> alone{static_cast<int>(j)};
-        const int at = triangle_place(alone.front(), alone.front());
-        if (std::ranges::find(evidence.groups, alone, &GroupEvidence::components) == evidence.groups.end())
-            evidence.bias[j].square = moments_of_trials(
-                *evidence.moments, [&](std::size_t i) { return evidence.moments->S(i)[at] / evidence.moments->C(i)[at]; });
+    if (!evidence.moments) return;
+    const TrialMoments& moments = *evidence.moments;
+    for (int g = 0; g < moments.groups; ++g)
+        evidence.groups[static_cast<std::size_t>(g)].largest =
+            largest_of(moments, [&](std::size_t i) { return moments.X(i, g); });
+    if (std::ssize(evidence.bias) != moments.components) return;
+    for (int j = 0; j < moments.components; ++j) {
+        if (std::ranges::find(evidence.groups, std::vector<int>{j}, &GroupEvidence::components) !=
+            evidence.groups.end())
+            continue;
+        const auto square = [&, at = triangle_place(j, j)](std::size_t i) {
+            return moments.S(i)[at] / moments.C(i)[at];
+        };
+        BiasEvidence& bias = evidence.bias[static_cast<std::size_t>(j)];
+        bias.square = moments_of_trials(moments, square);
+        bias.largest_square = largest_of(moments, square);
     }
 }
 

@@ -30,8 +30,12 @@ void judge_suspicion(const BiasEvidence& bias, int components, Judgement& judgem
 void judge_offset(const BiasEvidence& bias, const BiasClaim& claim, const Evidence& evidence, Judgement& judgement) {
     const std::string several = "once in a run; five runs can tell";
     if (bias.drift != 0)
-        judgement.note({Subject::offset, Fault::biased, bias.component, "drift over the run, of the filter or drawn " + several,
-                        bias.drift, {bias.drift - bias.drift_half_width, bias.drift + bias.drift_half_width},
+        judgement.note({Subject::offset,
+                        Fault::biased,
+                        bias.component,
+                        "drift over the run, of the filter or drawn " + several,
+                        bias.drift,
+                        {bias.drift - bias.drift_half_width, bias.drift + bias.drift_half_width},
                         "drift/sigma"});
     if (!claim.finding) return;
     constexpr double one_draw = 3.2;

@@ -68,7 +68,8 @@ void judge_group(const Evidence& evidence, const GroupEvidence& group, const Gro
     if (evidence.has_offsets()) found.smallest.finding = false;
     if (evidence.has_offsets() && evidence.centred) {
         const GroupMoments centred = group_moments(*evidence.centred, moments.components);
-        const GroupDirections about = find_directions(centred, fold_sums(centred), level, limits_of(evidence, judgement));
+        const GroupDirections about =
+            find_directions(centred, fold_sums(centred), level, limits_of(evidence, judgement));
         if (about.state != GroupDirections::State::known) return;
         found.largest = about.largest;
     }

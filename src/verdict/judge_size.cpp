@@ -1,10 +1,9 @@
 // The verdict's size: NEES/dimension over all steps, of the named groups and of every component by itself.
 
-#include "verdict/judgement.hpp"
+#include <algorithm>
 
 #include "base/formatted.hpp"
-
-#include <algorithm>
+#include "verdict/judgement.hpp"
 
 namespace credence {
 
@@ -37,10 +36,13 @@ void judge_size(const JudgedSize& size, int place, const Evidence& evidence, Jud
                  margin = judgement.limits().margin;
     const auto claim_on = [&](PositiveSample sample) {
         sample.of_few_numbers = evidence.steps_together() * size.dimension < many_numbers;
-        return claim_on_nees(sample, degrees_over_steps(sample, size.dimension, evidence.steps_together()), level, margin);
+        if (!evidence.segments.count && !sample.of_few_numbers) sample.largest = 0;
+        const double degrees = degrees_over_steps(sample, size.dimension, evidence.steps_together());
+        return claim_on_nees(sample, degrees, level, margin);
     };
     const auto add = [&](Side side, const PositiveSample& sample, const MeanClaim& claim) {
-        judgement.add(side, {Subject::size, Fault{}, size.name, "over all steps", sample.mean, claim.bounds, "NEES/dim"});
+        judgement.add(side,
+                      {Subject::size, Fault{}, size.name, "over all steps", sample.mean, claim.bounds, "NEES/dim"});
     };
     const PositiveSample& large = evidence.has_offsets() && size.centred.trials > 0 ? size.centred : size.sample;
     const MeanClaim above = claim_on(large), below = claim_on(size.sample);
@@ -50,9 +52,12 @@ void judge_size(const JudgedSize& size, int place, const Evidence& evidence, Jud
         return size.sample.mean / least < 1 - margin;
     };
     const bool is_small = below.below && (!evidence.has_offsets() || beyond_draws());
-    if (above.above) add(Side::above, large, above);
-    else if (is_small) add(Side::below, size.sample, below);
-    else if (below.below) withhold_too_small(size, below.bounds, evidence, judgement);
+    if (above.above)
+        add(Side::above, large, above);
+    else if (is_small)
+        add(Side::below, size.sample, below);
+    else if (below.below)
+        withhold_too_small(size, below.bounds, evidence, judgement);
     else if (std::optional<Suspicion> looks = suspicion_of(large, level, margin);
              looks && (looks->what == Fault::optimistic || !evidence.has_offsets()))
         judgement.suspect({Subject::size, looks->what, size.name, looks->value, "NEES/dim", looks->trials});

@@ -14,7 +14,8 @@ namespace credence {
 
 namespace {
 
-constexpr double doubted = 0.01;  ///< the level at which segments count as dependent, or runs as different, of all series
+constexpr double doubted =
+    0.01;  ///< the level at which segments count as dependent, or runs as different, of all series
 
 /// One number of each segment, run by run: NEES/dim of a group, or the mean standardised error of a component.
 struct SegmentSeries {
@@ -169,14 +170,6 @@ std::string differing_runs(const Evidence& segments, const std::vector<std::int6
     return {};
 }
 
-template <class Value>
-double largest_of(const Evidence& segments, const Value& value) {
-    double largest = 0;
-    for (std::size_t i = 0; segments.moments && i < segments.moments->trials(); ++i)
-        largest = std::fmax(largest, value(*segments.moments, i));
-    return largest;
-}
-
 }  // namespace
 
 Evidence by_segments(Evidence runs, Evidence segments, const std::optional<Evidence>& centred) {
@@ -190,8 +183,7 @@ Evidence by_segments(Evidence runs, Evidence segments, const std::optional<Evide
     }
     for (std::size_t g = 0; g < runs.groups.size(); ++g) {
         runs.groups[g].run = segments.groups[g].run;
-        runs.groups[g].largest = largest_of(
-            segments, [&](const TrialMoments& moments, std::size_t i) { return moments.X(i, static_cast<int>(g)); });
+        runs.groups[g].largest = segments.groups[g].largest;
         runs.groups[g].accuracy.ratio = segments.groups[g].accuracy.ratio;
         runs.groups[g].accuracy.ratio_ci95 = segments.groups[g].accuracy.ratio_ci95;
     }
@@ -200,10 +192,7 @@ Evidence by_segments(Evidence runs, Evidence segments, const std::optional<Evide
     for (std::size_t j = 0; j < runs.bias.size(); ++j) {
         BiasEvidence& bias = runs.bias[j];
         bias.square = segments.bias[j].square;
-        if (bias.square.count > 0) bias.largest_square = largest_of(segments, [&](const TrialMoments& moments, std::size_t i) {
-                const int at = triangle_place(static_cast<int>(j), static_cast<int>(j));
-                return moments.S(i)[at] / moments.C(i)[at];
-            });
+        bias.largest_square = segments.bias[j].largest_square;
         if (runs.trials >= runs_that_tell) continue;
         bias.run = segments.bias[j].run;
         if (j >= drifts.size()) continue;

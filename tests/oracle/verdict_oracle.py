@@ -17,6 +17,7 @@ from scipy import optimize, stats
 
 LEVEL_RUN, LEVEL_STEP, LEVEL_DIRECTION, LEVEL_BIAS = 0.03, 0.00125, 0.015, 0.0025  # false findings: together about 5 %
 UNSEEN = 0.135            # that more trials were missed than a finding allows for
+UNSEEN_OF_FEW = 0.01      # the same of trials of fewer than 20 numbers
 LEVEL_ACCEPT = 0.025      # each side of an acceptance: a two-sided 95 % interval
 DIRECTION_TRIALS = 20     # least number of trials for a claim about directions
 FOLDS = 3                 # parts of the trials; a direction is found on the others
@@ -229,7 +230,7 @@ def compare(v, kind, where, mean, sd, trials, degrees, level, margin, unseen=UNS
     what was missed is nine whatever the mean is."""
     low, high = lower(mean, sd, trials, level), upper(mean, sd, trials, level, unseen)
     if numbers < 20:
-        high = upper(mean, sd, trials, level) + (1 - unseen ** (1 / trials)) * max(0, 9 - mean)
+        high = upper(mean, sd, trials, level) + (1 - min(unseen, UNSEEN_OF_FEW) ** (1 / trials)) * max(0, 9 - mean)
     high += max(0, largest - mean) / trials
     if low > 1 + margin and beyond_chi_square(mean, degrees, "above", level, margin):
         v.findings.append((kind, where, "above", mean, low))
@@ -251,7 +252,7 @@ def own_groups(x):
 def find_mean(x, X, kind, name, dimension, g, limits, v):
     compare(v, kind, name, X.mean(), X.std(ddof=1), len(X), degrees_over_steps(X, dimension, x.steps),
             share_of(LEVEL_RUN, g, len(x.groups) + len(own_groups(x))) / 2, limits.margin,
-            largest=X.max() if x.of_segments else 0, numbers=x.steps * dimension)
+            largest=X.max() if x.of_segments or x.steps * dimension < 20 else 0, numbers=x.steps * dimension)
 
 
 def find_components(x, limits, v):
@@ -267,7 +268,7 @@ def find_nees(x, limits, v):
         for k in range(x.steps if x.step_mean is not None else 0):
             level = LEVEL_STEP / (2 * G * x.steps)
             compare(v, "step", (name, k), x.step_mean[g, k], x.step_sd[g, k], N, N * len(c), level, limits.margin,
-                    level)
+                    level, numbers=len(c))
 
 
 def find_directions(x, limits, v):
@@ -284,7 +285,7 @@ def direction_found(x, y, which, level, limits):
     """The claim on the numbers y of a direction, as of a group of one component."""
     one = Verdict()
     compare(one, "", "", y.mean(), y.std(ddof=1), x.trials, degrees_over_steps(y, 1, x.steps), level, limits.margin,
-            largest=y.max() if x.of_segments else 0, numbers=x.steps)
+            largest=y.max() if x.of_segments or x.steps < 20 else 0, numbers=x.steps)
     side = "above" if which == -1 else "below"
     return next((finding[2:] for finding in one.findings if finding[2] == side), None)
 
@@ -365,8 +366,8 @@ def segment_length(time, runs, steps):
     count = lambda length: runs * (steps // length)  # noqa: E731
     if runs > MOST_RUNS or not np.ceil(10 * time) / 2 <= steps:
         return 0
-    length, shortest = int(max(np.ceil(10 * time), np.ceil(runs * steps / MOST_SEGMENTS))), int(np.ceil(np.ceil(10 * time) / 2))
-    length, parts = min(length, steps), 1
+    length = min(int(max(np.ceil(10 * time), np.ceil(runs * steps / MOST_SEGMENTS))), steps)
+    shortest, parts = int(np.ceil(np.ceil(10 * time) / 2)), 1
     while count(length) < LEAST_SEGMENTS and length > shortest:
         length, parts = min(length, max(steps // parts, shortest)), parts + 1
     return length if count(length) >= max(LEAST_SEGMENTS, 2 * runs) else 0
@@ -437,7 +438,8 @@ def judge_runs(e, P, groups, limits=Limits()):
         one = Verdict()
         find_nees(numbers_, limits, one), find_components(numbers_, limits, one)
         find_directions(numbers_, limits, one)
-        v.findings += [f for f in one.findings if f[2] == side and not (few and side == "below" and explained(f, x, R, limits))]
+        withheld = few and side == "below"
+        v.findings += [f for f in one.findings if f[2] == side and not (withheld and explained(f, x, R, limits))]
     steps = Verdict()
     find_nees(of_runs, limits, steps)
     v.findings += [f for f in steps.findings if f[0] == "step"]

@@ -184,23 +184,24 @@ TEST_CASE("segments: a covariance that is too small or too large is found in one
             for (Eigen::MatrixXd& P : log.covariance) P *= factor;
             const Consistency found = verdict_on(log);
             CAPTURE(factor, runs, joined(found.reasons, "; "));
-            const bool is_small = factor > 1 && runs == 5;  // in one run, errors that are too small may have been drawn once
+            const bool is_small = factor > 1 && runs == 5;  // of one run, they may have been drawn once
             CHECK(found.verdict == (factor < 1   ? Verdict::optimistic
                                     : is_small   ? Verdict::pessimistic
                                     : factor > 1 ? Verdict::undecided
                                     : runs == 5  ? Verdict::consistent
                                                  : Verdict::undecided));
-            CHECK(found.findings.empty() == (found.verdict == Verdict::undecided || found.verdict == Verdict::consistent));
-            const bool says = joined(found.reasons, "; ").find("P is larger than the errors of this run: NEES/dim of all") !=
-                              std::string::npos;
-            CHECK(says == (factor > 1 && runs == 1));
+            CHECK(found.findings.empty() ==
+                  (found.verdict == Verdict::undecided || found.verdict == Verdict::consistent));
+            const std::string too_large = "P is larger than the errors of this run: NEES/dim of all";
+            CHECK((joined(found.reasons, "; ").find(too_large) != std::string::npos) == (factor > 1 && runs == 1));
         }
     const Report within = judged(logs(5, 12000, 0.3), segments_auto, 0.2);
     CAPTURE(joined(within.arms.front().consistency.reasons, "; "));
     CHECK(within.arms.front().consistency.verdict == Verdict::consistent);
 }
 
-TEST_CASE("segments: an offset or a drift of a log is a note, hides no wrong P, and is found if it is beyond one draw") {
+TEST_CASE(
+    "segments: an offset or a drift of a log is a note, hides no wrong P, and is found if it is beyond one draw") {
     const auto shifted = [](double sigmas, double drift, double factor) {
         DrawnRecord log = logs(1, 3000, 0.5);
         for (std::size_t k = 0; k < log.error.size(); ++k) {
@@ -242,8 +243,7 @@ TEST_CASE("segments: runs that differ, and segments that are alike, withhold the
         DrawnRecord several = logs(runs, 8000, 0.2);
         CHECK(judged(several, 50, Limits(wide)).arms.front().evidence.segments.count);
         for (int run = 0; run < runs; ++run)
-            for (int k = 0; k < 8000; ++k)
-                several.error[several.at(run, k)] *= run % 2 == 0 ? 1.05 : 0.95;
+            for (int k = 0; k < 8000; ++k) several.error[several.at(run, k)] *= run % 2 == 0 ? 1.05 : 0.95;
         CHECK(!judged(several, 50, Limits(wide)).arms.front().evidence.segments.count);
         CHECK_THAT(reasons(several, 50),
                    Catch::Contains("the runs differ among each other, so that each counts as one: NEES of all"));

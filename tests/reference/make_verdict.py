@@ -80,7 +80,8 @@ def one_direction(x, c, which, level, limits):
     low = lower(y.mean(), y.std(ddof=1), x.trials, level)
     high = upper(y.mean(), y.std(ddof=1), x.trials, level, UNSEEN)
     if x.steps < 20:
-        high = upper(y.mean(), y.std(ddof=1), x.trials, level) + (1 - UNSEEN ** (1 / x.trials)) * max(0, 9 - y.mean())
+        high = upper(y.mean(), y.std(ddof=1), x.trials, level) + (1 - UNSEEN_OF_FEW ** (1 / x.trials)) * max(0, 9 - y.mean())
+        high += (y.max() - y.mean()) / x.trials
     entries = named(v, c)
     return {"components": list(entries), "weights": list(entries.values()), "ratio": y.mean(), "bounds": [low, high],
             "approximate": is_approximate(folds, v, part_of(x.predicted, c)),

@@ -78,8 +78,8 @@ TEST_CASE("verdict: directions, their names and their bounds agree with the orac
         const TrialMoments trials = drawn.moments();
         for (const Json& expected : one["directions"]) {
             const GroupMoments group = group_moments(trials, expected["group"]);
-            const GroupDirections found = find_directions(group, fold_sums(group), expected["level"],
-                                                          {.steps = one["steps"].get<double>()});
+            const GroupDirections found =
+                find_directions(group, fold_sums(group), expected["level"], {.steps = one["steps"].get<double>()});
             CAPTURE(one["n"], one["kind"], one["seed"]);
             REQUIRE(found.state == GroupDirections::State::known);
             CHECK(found.trials == one["trials"]);

@@ -1,12 +1,11 @@
 #include "report/data/json.hpp"
 
-#include "base/nan.hpp"
-
+#include <algorithm>
+#include <cmath>
 #include <credence/consistency.hpp>
 #include <credence/text.hpp>
 
-#include <algorithm>
-#include <cmath>
+#include "base/nan.hpp"
 
 namespace credence {
 

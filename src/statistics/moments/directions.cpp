@@ -129,8 +129,8 @@ GroupDirections find_directions(const GroupMoments& group, const FoldSums& sums,
     for (const bool largest : {true, false}) {
         const FoldDirections folds{others[0].of(largest), others[1].of(largest), others[2].of(largest)};
         PositiveSample sample = crossed_ratio(folds, group, sums);
-        if (!limits.of_segments) sample.largest = 0;
         sample.of_few_numbers = limits.steps < many_numbers;
+        if (!limits.of_segments && !sample.of_few_numbers) sample.largest = 0;
         const MeanClaim claim =
             claim_on_nees(sample, degrees_over_steps(sample, 1, limits.steps), level, limits.margin);
         const VectorXd v = all.of(largest);
