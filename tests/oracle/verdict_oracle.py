@@ -220,6 +220,8 @@ def judge(x, limits=Limits(), advise=False):
 def beyond_chi_square(mean, degrees, side, level, margin):
     """Student's interval is too narrow for few trials, because chi-square is skewed: a claim must also be beyond the
     exact bound for NEES distributed as (1 -+ margin) chi-square."""
+    if degrees is None:
+        return True
     if side == "above":
         return mean / (1 + margin) * degrees > stats.chi2.isf(level, degrees)
     return mean / (1 - margin) * degrees < stats.chi2.ppf(level, degrees)
@@ -276,16 +278,17 @@ def find_directions(x, limits, v):
     for g, (name, c) in enumerate(groups):
         level = share_of(LEVEL_DIRECTION, g, len(groups)) / 2
         for which in (-1, 0):
-            found = direction_found(x, crossed(x, c, which, limits)[0], which, level, limits)
+            found = direction_found(x, crossed(x, c, which, limits)[0], which, level, limits, len(c))
             if found:
                 v.findings.append(("direction", name, *found))
 
 
-def direction_found(x, y, which, level, limits):
-    """The claim on the numbers y of a direction, as of a group of one component."""
+def direction_found(x, y, which, level, limits, dimension):
+    """The claim on the numbers y of a direction, as of a group of one component; of many trials without chi-square."""
     one = Verdict()
-    compare(one, "", "", y.mean(), y.std(ddof=1), x.trials, degrees_over_steps(y, 1, x.steps), level, limits.margin,
-            largest=y.max() if x.of_segments or x.steps < 20 else 0, numbers=x.steps)
+    degrees, numbers_ = degrees_over_steps(y, 1, x.steps) if x.trials < 200 else None, x.steps * dimension
+    compare(one, "", "", y.mean(), y.std(ddof=1), x.trials, degrees, level, limits.margin,
+            largest=y.max() if x.of_segments or numbers_ < 20 else 0, numbers=numbers_)
     side = "above" if which == -1 else "below"
     return next((finding[2:] for finding in one.findings if finding[2] == side), None)
 

@@ -79,13 +79,13 @@ def one_direction(x, c, which, level, limits):
     _, v = extreme(x, c, which, limits)
     low = lower(y.mean(), y.std(ddof=1), x.trials, level)
     high = upper(y.mean(), y.std(ddof=1), x.trials, level, UNSEEN)
-    if x.steps < 20:
+    if x.steps * len(c) < 20:
         high = upper(y.mean(), y.std(ddof=1), x.trials, level) + (1 - UNSEEN_OF_FEW ** (1 / x.trials)) * max(0, 9 - y.mean())
         high += (y.max() - y.mean()) / x.trials
     entries = named(v, c)
     return {"components": list(entries), "weights": list(entries.values()), "ratio": y.mean(), "bounds": [low, high],
             "approximate": is_approximate(folds, v, part_of(x.predicted, c)),
-            "finding": direction_found(x, y, which, level, limits) is not None}
+            "finding": direction_found(x, y, which, level, limits, len(c)) is not None}
 
 
 def verdict_on_directions(x, limits):

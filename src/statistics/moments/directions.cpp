@@ -129,10 +129,12 @@ GroupDirections find_directions(const GroupMoments& group, const FoldSums& sums,
     for (const bool largest : {true, false}) {
         const FoldDirections folds{others[0].of(largest), others[1].of(largest), others[2].of(largest)};
         PositiveSample sample = crossed_ratio(folds, group, sums);
-        sample.of_few_numbers = limits.steps < many_numbers;
+        sample.of_few_numbers = limits.steps * group.dimension() < many_numbers;
         if (!limits.of_segments && !sample.of_few_numbers) sample.largest = 0;
-        const MeanClaim claim =
-            claim_on_nees(sample, degrees_over_steps(sample, 1, limits.steps), level, limits.margin);
+        // Of many trials Student's interval needs no help.
+        const MeanClaim claim = sample.trials < 200 ? claim_on_nees(sample, degrees_over_steps(sample, 1, limits.steps),
+                                                                    level, limits.margin)
+                                                    : claim_on_mean(sample, level, limits.margin);
         const VectorXd v = all.of(largest);
         Direction& direction = largest ? found.largest : found.smallest;
         direction.entries = entries_of(v, group.components);
