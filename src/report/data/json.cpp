@@ -1,11 +1,10 @@
 #include "report/data/json.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <credence/consistency.hpp>
 #include <credence/text.hpp>
 
-#include "base/nan.hpp"
+#include <algorithm>
+#include <cmath>
 
 namespace credence {
 
@@ -91,7 +90,6 @@ Json whiteness_json(const Whiteness& lag) {
 
 Json bias_json(const BiasEvidence& bias) {
     return {{"component", bias.component},
-            {"nees_per_dimension", bias.square.count > 0 ? bias.square.mean : nan},
             {"mean", each_json(bias.step, [](const Moments& step) { return step.mean; })},
             {"se", each_json(bias.step, [](const Moments& step) { return step.standard_error; })}};
 }
