@@ -18,7 +18,7 @@ EXPECTED = {
     "inflated": [("5%", "consistent", [], []), ("0.8%", "pessimistic", [("pessimistic", "all")], [])],
     "deflated": [("5%", "consistent", [], []), ("0.8%", "optimistic", [("optimistic", "all")], [])],
     "correlated": [("5%", "consistent", [], [("correlated", "innovations")])],
-    "heavy": [("5%", "consistent", [], [("misshapen", "all")])],
+    "heavy": [("5%", "consistent", [], [("non-chi-square", "all")])],
     "biased": [("5%", "optimistic", [("biased", "x1")], [])],
     "block": [("5%", "optimistic", [("optimistic", "feature_1"), ("optimistic", "all")], [])],
     "missing": [("5%", "consistent", [], [])],

@@ -55,7 +55,7 @@ inline ExactSum awkward_sum(std::size_t i) {
     }
 }
 
-/// A study of made-up numbers: 5 trials, of which trial 1 failed and trial 3 is lost.
+/// A study of made-up numbers: 5 trials, of which trial 1 failed and trial 3 diverged.
 inline Study made_up_study(const std::vector<DeformableSettings>& scenarios = {scenario("first"),
                                                                                scenario("second", "translation")}) {
     Study study = new_study(scenarios, 18446744073709551615u);

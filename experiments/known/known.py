@@ -126,7 +126,7 @@ def doubled(run: Run) -> Record:
     return half | {name: np.repeat(half[name][: RUNS // 2], 2, axis=0) for name in ("error", "covariance")}
 
 
-def lost(run: Run) -> Record:
+def diverged(run: Run) -> Record:
     factor = np.where(np.arange(RUNS) % 50 == 7, 10.0, 1.0)
     return run.record(error=(run.estimate - run.truth) * factor[:, None, None])
 
@@ -198,7 +198,7 @@ KNOWN: dict[str, tuple[bool, str, Callable[[np.random.Generator], Record]]] = {
         lambda run: run.record(error=run.estimate - run.truth + np.array([0.3, 0])))),
     "drift": (False, "a bias of the sensor that drifts", drifting),
     "outliers": (False, "4 % of measurements off by 8 sigma", outliers),
-    "lost": (False, "2 % of the runs lost", of_tracker(lost)),
+    "diverged": (False, "2 % of the runs diverged", of_tracker(diverged)),
     "by_run": (False, "P three times too large in half of the runs", lambda rng: by_run(tracker(normal(rng)), rng)),
     "repeated": (False, "every run is there twice", of_tracker(doubled)),
     "S": (False, "S of the innovations 0.6 of what it is", of_tracker(lambda run: with_innovations(run, 0.6))),

@@ -12,17 +12,17 @@ namespace credence {
 /// How a trial ended. Only the last two have no columns; only the first one is in the series.
 enum class Status : std::int8_t {
     completed = 0,
-    lost = 1,                              ///< its NEES/n is beyond `lost_nees_ratio`
+    diverged = 1,  ///< its NEES/n is beyond `diverged_nees_ratio`
     covariance_not_positive_definite = 2,
     non_finite = 3,
 };
 /// Beyond this a number of a trial counts as not finite: its squares' squares must still add up.
 inline constexpr double largest_number = 1e70;
-/// A trial is lost if NEES/n of the whole state, mean over its steps, is beyond this: errors of five sigma throughout.
-inline constexpr double lost_nees_ratio = 25;
-/// So many numbers, steps times components, a trial has at least that may be lost: in fewer, a large error or two are
-/// chance.
-inline constexpr int least_lost_numbers = 20;
+/// A trial diverged if NEES/n of the whole state, mean over its steps, is beyond this: errors of five sigma throughout.
+inline constexpr double diverged_nees_ratio = 25;
+/// So many numbers, steps times components, a trial has at least that may be diverged: in fewer, a large error or two
+/// are chance.
+inline constexpr int least_diverged_numbers = 20;
 
 const std::vector<std::string>& status_names();
 

@@ -42,7 +42,7 @@ enum class Subject {
     innovations,  ///< NIS/m
     whiteness,
     distribution,  ///< of NEES, against chi-square
-    tenth,         ///< mean errors over a tenth of the steps
+    window,        ///< mean errors over a tenth of the steps
     calibration,   ///< NEES/dimension of the trials with a small or a large P
     offset,        ///< a mean error, or its drift, of runs too few to tell what was drawn once from a bias
 };
@@ -52,9 +52,9 @@ const std::string& subject_name(Subject subject);
 
 /// What is wrong: too large or too small for P, a mean error that is not 0; as a caution, innovations that are
 /// correlated or a distribution that is not chi-square.
-enum class Fault { optimistic, pessimistic, biased, correlated, misshapen };
+enum class Fault { optimistic, pessimistic, biased, correlated, non_chi_square };
 
-/// `optimistic`, `pessimistic`, `biased`, `correlated`, `misshapen`
+/// `optimistic`, `pessimistic`, `biased`, `correlated`, `non-chi-square`
 const std::string& fault_name(Fault fault);
 
 /// One finding: what was found, where (a component group, a component, a group of rows), and when.

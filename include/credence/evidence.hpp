@@ -166,9 +166,9 @@ struct Evidence {
     std::int64_t trials = 0;                   ///< over which the evidence is computed
     std::int64_t all_trials = 0;
     std::int64_t left_out = 0;                 ///< trials that failed and are left out
-    std::int64_t lost = 0;                     ///< trials that are lost [columns.hpp], and left out, too
-    bool lost_are_judged = false;              ///< they are more than half, and not left out
-    std::vector<WorstTrial> lost_trials;       ///< of the detailed ones, ten at most, the worst first
+    std::int64_t diverged = 0;                 ///< trials that diverged [columns.hpp], and left out, too
+    bool diverged_are_judged = false;          ///< they are more than half, and not left out
+    std::vector<WorstTrial> diverged_trials;   ///< of the detailed ones, ten at most, the worst first
     int steps = 0;
     std::vector<GroupEvidence> groups;         ///< the whole state first
     std::vector<ChartEvidence> charts;         ///< other charts of the error, where the study has them
@@ -178,7 +178,7 @@ struct Evidence {
     DistributionEvidence distribution;
     CredibilityEvidence credibility;
     WorstTrials worst;
-    std::vector<Moments> fifths;               ///< of NEES/n, of the trials by their log det P; may be empty
+    std::vector<Moments> quintiles;               ///< of NEES/n, of the trials by their log det P; may be empty
     std::shared_ptr<const TrialMoments> moments;  ///< of the detailed trials; null where the file has none
     /// The same with errors about the mean of their run, or of their segment where a drift is shown, where segments of
     /// fewer than `runs_that_tell` runs count; else null.
@@ -188,8 +188,8 @@ struct Evidence {
     SegmentEvidence segments;
     bool joint = true;                         ///< false: of a record without a covariance of the whole state
 
-    std::int64_t failed_trials() const { return left_out + lost; }
-    /// Upper 95 % bound on the share of trials that fail or are lost [Clopper and Pearson 1934]; NaN of one log.
+    std::int64_t failed_trials() const { return left_out + diverged; }
+    /// Upper 95 % bound on the share of trials that fail or diverge [Clopper and Pearson 1934]; NaN of one log.
     double may_be_unseen() const;
     /// Whether segments count, of runs too few to be trials themselves.
     bool of_few_runs() const { return segments.count && trials < least_segments; }

@@ -45,7 +45,7 @@ struct ArmReport {
     std::string scenario, arm;
     std::int64_t trials = 0;                ///< all that are present; 0: the arm has not run yet
     std::int64_t failed = 0;                ///< of them, those that are left out of the columns
-    std::int64_t lost = 0;                  ///< of them, those that are lost, whose columns are kept
+    std::int64_t diverged = 0;              ///< of them, those that diverged, whose columns are kept
     std::vector<ColumnReport> columns;      ///< the real and integer columns, in their order, status columns left out
     Evidence evidence;
     Consistency consistency;
@@ -56,7 +56,7 @@ struct ArmReport {
 
     bool not_run() const { return trials == 0; }
     /// The largest share of failed trials without the verdict `failed`.
-    std::int64_t failed_trials() const { return failed + lost; }
+    std::int64_t failed_trials() const { return failed + diverged; }
 };
 
 struct Report {
@@ -74,7 +74,7 @@ struct Report {
     std::vector<Comparison> pairs;          ///< greedy - fixed and horizon - greedy of the same estimator, by trial
 };
 
-/// Failed trials are left out (their values are NaN); lost ones are left out of the verdict alone.
+/// Failed trials are left out (their values are NaN); diverged ones are left out of the verdict alone.
 Report make_report(const Study& study, const Limits& limits);
 
 /// The same of a record: one arm, `record`; `path` names it.

@@ -14,7 +14,7 @@
 namespace credence {
 
 /// Version of the layout of results files. A file of another version is refused.
-inline constexpr int schema_version = 4;
+inline constexpr int schema_version = 5;
 /// Version of draws, columns and series.
 inline constexpr int draws_version = 2;
 

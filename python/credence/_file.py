@@ -17,7 +17,7 @@ FloatArray = npt.NDArray[np.float64]
 Array = npt.NDArray[Any]
 Source = str | os.PathLike[str] | BinaryIO
 
-SCHEMA_VERSION = 4
+SCHEMA_VERSION = 5
 RESULTS, TRAJECTORIES = "credence results", "credence trajectories"
 
 

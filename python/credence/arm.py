@@ -65,12 +65,12 @@ class Arm(Variables):
     @property
     def counted_trials(self) -> int:
         """Trials over which the series run: all but those that failed (a covariance that is not positive definite,
-        values that are not finite) or are lost. The columns have the lost ones, too."""
+        values that are not finite) or diverged. The columns have the diverged ones, too."""
         return int(self.group.attrs["counted_trials"])
 
     @property
     def ended(self) -> dict[str, int]:
-        """{how they ended: trials}, such as ``completed`` and ``lost``."""
+        """{how they ended: trials}, such as ``completed`` and ``diverged``."""
         status = self.group["status" if self.keeps_trials else "status_code"]
         codes = status.attrs["flag_values"].tolist()
         counts = [np.sum(status[:] == code) for code in codes] if self.keeps_trials else self.group["status_count"][:]
@@ -78,7 +78,7 @@ class Arm(Variables):
 
     @property
     def failed_trials(self) -> int:
-        """Trials that failed or are lost; a verdict counts them so."""
+        """Trials that failed or diverged; a verdict counts them so."""
         return self.trials - self.ended["completed"]
 
     def read(self, name: str, selection: Any = ()) -> Array:

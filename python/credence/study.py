@@ -213,7 +213,7 @@ def open(source: Source | Results | Sequence[str | os.PathLike[str]]) -> Study:
     Parameters
     ----------
     source : path, binary file, Simulation or list of paths
-        What ``credence run -o`` wrote, of schema version 4, or an open file, such as io.BytesIO; what `simulate` gives;
+        What ``credence run -o`` wrote, of schema version 5, or an open file, such as io.BytesIO; what `simulate` gives;
         or the path of a record [docs/judge.md], or several of the same trials, which are then its arms.
 
     Returns

@@ -114,7 +114,7 @@ def troubled(rng):
     record["error"][5, 1, 2] = np.inf
     record["error"][7, 4:] = np.nan  # ends early
     record["covariance"][7, 4:] = np.nan
-    record["error"][9] *= 1e13  # lost
+    record["error"][9] *= 1e13  # diverged
     return record
 
 

@@ -261,14 +261,14 @@ def test_records_of_other_runs_are_not_compared(tmp_path):
         refused(said, credence.compare, first, other)
 
 
-def test_what_cancels_over_all_steps_is_found_in_its_tenths():
+def test_what_cancels_over_all_steps_is_found_in_its_windows():
     rng = np.random.default_rng(9)
     errors, covariance = rng.normal(size=(2000, 50, 1)), np.ones((2000, 50, 1, 1))
     assert credence.judge(errors, covariance).verdict == "consistent"
     halves = np.where(np.arange(50) < 25, 0.5, -0.5)[:, None]
     moved = (errors + halves) / np.sqrt(1.25)  # of mean square 1 at every step
     found = credence.judge(moved, covariance)
-    assert [one.about for one in found.findings] == ["tenth"]
+    assert [one.about for one in found.findings] == ["window"]
     early = errors * np.where(np.arange(50) < 25, 0.83, 1.145)[:, None]
     assert credence.judge(early, covariance, margin=0.1).verdict != "consistent"
 
@@ -284,8 +284,8 @@ def test_p_that_is_wrong_where_it_is_large_and_where_it_is_small_is_found():
     found = credence.judge(wrong, covariance)
     calibration = [one for one in found.findings if one.about == "calibration"]
     assert {one.when for one in calibration} >= {
-        "the fifth of the trials with the smallest P",
-        "the fifth of the trials with the largest P",
+        "the quintile of the trials with the smallest P",
+        "the quintile of the trials with the largest P",
     }
     assert [one.what for one in calibration] == ["optimistic", "optimistic", "pessimistic", "pessimistic"]
 

@@ -132,7 +132,7 @@ def test_failed_trials_are_nan_and_counted(tmp_path):
             assert arm.mean(name).count == 599
             assert other.mean(name, minus=arm).count == 599
         assert arm.status_pose[1] == 6
-        assert arm.ended == {"completed": 598, "lost": 1, "covariance_not_positive_definite": 1, "non_finite": 0}
+        assert arm.ended == {"completed": 598, "diverged": 1, "covariance_not_positive_definite": 1, "non_finite": 0}
         assert (arm.trials, arm.counted_trials, arm.failed_trials) == (600, 598, 2)
         assert "600 trials, 2 failed" in repr(arm)
 
@@ -155,14 +155,14 @@ def test_what_cannot_be_read_is_refused():
     with h5py.File("other.h5", "w") as file:
         file["x"] = 1
     newer = studies.edited(studies.one_scenario(), pathlib.Path("new.h5"),
-                           lambda file: file.attrs.modify("schema_version", np.int32(5)))  # fmt: skip
+                           lambda file: file.attrs.modify("schema_version", np.int32(6)))  # fmt: skip
     for said, read, given in (
         ("cannot be read as HDF5", credence.open, "text.h5"),
         ("cannot be found", credence.open, "nothing.h5"),
         (r"Take credence\.open_trajectories", credence.open, studies.trajectory()),
         (r"Take credence\.open\.", credence.open_trajectories, studies.one_scenario()),
         ("format=none", credence.open, "other.h5"),
-        (r"schema_version=5 \(this package reads 4\)", credence.open, newer),
+        (r"schema_version=6 \(this package reads 5\)", credence.open, newer),
     ):
         refused(said, read, given, raises=(ValueError, FileNotFoundError))
 

@@ -28,15 +28,15 @@ void each_step(const RecordReader& reader, const std::function<void(const Record
 namespace {
 
 Record read_record(const RecordReader& reader, const std::string& name, const ReportProgress& progress, int segments,
-                   LostTrials lost, Copies copies) {
+                   DivergedTrials diverged, Copies copies) {
     SegmentPlanner planner(reader.shape(), segments);
-    RecordTotals totals(reader.shape(), name, lost, copies, &planner);
+    RecordTotals totals(reader.shape(), name, diverged, copies, &planner);
     each_step(reader, [&](const RecordStep& one) { totals.add(one); }, progress);
-    if (totals.agree_by_chance()) return read_record(reader, name, progress, segments, lost, Copies::count);
+    if (totals.agree_by_chance()) return read_record(reader, name, progress, segments, diverged, Copies::count);
     Record record = totals.finish();
     const TrialTotals& trials = record.results.arms.front().totals.trials;
-    if (trials.lost() > trials.counted())
-        return read_record(reader, name, progress, segments, LostTrials::counted, copies);
+    if (trials.diverged() > trials.counted())
+        return read_record(reader, name, progress, segments, DivergedTrials::counted, copies);
     record.segments = planner.finish(reader, name);
     return record;
 }
@@ -44,7 +44,7 @@ Record read_record(const RecordReader& reader, const std::string& name, const Re
 }  // namespace
 
 Record read_record(const RecordReader& reader, const std::string& name, const ReportProgress& progress, int segments) {
-    return read_record(reader, name, progress, segments, LostTrials::set_aside, Copies::fail);
+    return read_record(reader, name, progress, segments, DivergedTrials::set_aside, Copies::fail);
 }
 
 Record read_in_chart(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,

@@ -170,7 +170,7 @@ ScenarioResults SegmentPlanner::results(const RecordReader& reader, const std::s
     shape.steps = shape.longest = found_.steps;
     shape.declared = declared_;
     shape.columns.clear();  // one number a run
-    RecordTotals totals(shape, name, LostTrials::counted, Copies::count);
+    RecordTotals totals(shape, name, DivergedTrials::counted, Copies::count);
     std::size_t next = 0;
     each_step(reader, [&](const RecordStep& one) {
         const bool inside = next < first_.size() && one.trial == found_.run[next] && one.step >= first_[next];

@@ -20,11 +20,11 @@ constexpr double accuracy_of_nis = 0.005;  ///< a tenth of the usual margin: whe
 
 }  // namespace
 
-RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, LostTrials lost, Copies copies,
+RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, DivergedTrials diverged, Copies copies,
                            SegmentPlanner* planner)
     : shape_(shape),
       kept_(shape_),
-      lost_(lost),
+      diverged_(diverged),
       copies_(copies),
       planner_(planner),
       all_series_(record_series(shape_)),
@@ -154,7 +154,7 @@ void RecordTotals::end_trial(std::int64_t trial) {
         const std::vector<double> moments = moments_.moments();
         std::copy(moments.begin(), moments.end(), arm().moments.begin() + trial * std::ssize(moments));
     }
-    if (lost_ == LostTrials::counted ? !failed(status_) : counts(status_)) {
+    if (diverged_ == DivergedTrials::counted ? !failed(status_) : counts(status_)) {
         gaps_.add(trial, shape_.steps_of(trial), present_, [this](std::size_t k) { return series(0, k) / shape_.n; });
         add_totals();
         if (planner_ != nullptr)
@@ -206,8 +206,9 @@ void RecordTotals::add_columns(std::int64_t trial) {
             row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_group(shape_));
         }
         row[RecordColumn::nees_ratio] = over_steps(0) / count(0) / shape_.n;
-        if (row[RecordColumn::nees_ratio] > lost_nees_ratio && std::ssize(present_) * shape_.n >= least_lost_numbers)
-            note_lost(trial, row[RecordColumn::nees_ratio]);
+        if (row[RecordColumn::nees_ratio] > diverged_nees_ratio &&
+            std::ssize(present_) * shape_.n >= least_diverged_numbers)
+            note_diverged(trial, row[RecordColumn::nees_ratio]);
         row[RecordColumn::nis_ratio] =
             record_.has_innovations ? over_steps(all_series_.nis) / over_steps(all_series_.rows) : nan;
     }
@@ -215,12 +216,12 @@ void RecordTotals::add_columns(std::int64_t trial) {
     for (std::size_t c = 0; c < row.size(); ++c) arm().columns.in_memory()[c][size(trial)] = row[c];
 }
 
-/// Names the step at which the NEES of a lost trial is largest.
-void RecordTotals::note_lost(std::int64_t trial, double nees_ratio) {
+/// Names the step at which the NEES of a diverged trial is largest.
+void RecordTotals::note_diverged(std::int64_t trial, double nees_ratio) {
     const auto nees = [&](std::size_t k) { return std::isnan(series(0, k)) ? -1 : series(0, k); };
     const std::size_t worst = *std::ranges::max_element(present_, {}, nees);
-    note({trial, static_cast<int>(worst)}, Status::lost,
-         formatted("the trial is lost: NEES/dim %.3g over its steps, most here", nees_ratio));
+    note({trial, static_cast<int>(worst)}, Status::diverged,
+         formatted("the trial diverged: NEES/dim %.3g over its steps, most here", nees_ratio));
 }
 
 Record RecordTotals::finish() {
@@ -229,7 +230,7 @@ Record RecordTotals::finish() {
     arm().totals.trials = trial_totals(record_.results.columns, 1, size(shape_.trials),
                                        [&](std::size_t, std::size_t c) { return arm().columns.in_memory()[c].data(); })
                               .front();
-    arm().totals.trials.lost_count = lost_ == LostTrials::counted;
+    arm().totals.trials.diverged_count = diverged_ == DivergedTrials::counted;
     std::vector<std::string>& said = record_.results.not_judged;
     if (innovations_left_out_ > 0)
         said.push_back("The innovations of " + std::to_string(innovations_left_out_) +

@@ -20,8 +20,8 @@ namespace credence {
 
 class SegmentPlanner;
 
-/// Whether trials that are lost are left out of the series, or count as the others.
-enum class LostTrials { set_aside, counted };
+/// Whether trials that diverged are left out of the series, or count as the others.
+enum class DivergedTrials { set_aside, counted };
 
 /// The steps of which a record has results by step: one in `every` [Record::every].
 struct KeptSteps {
@@ -37,7 +37,7 @@ struct KeptSteps {
 class RecordTotals {
 public:
     /// `path` names the scenario; `planner` learns of the runs.
-    RecordTotals(const RecordShape& shape, const std::string& path, LostTrials lost, Copies copies,
+    RecordTotals(const RecordShape& shape, const std::string& path, DivergedTrials diverged, Copies copies,
                  SegmentPlanner* planner = nullptr);
     RecordTotals(const RecordTotals&) = delete;
     RecordTotals& operator=(const RecordTotals&) = delete;
@@ -60,7 +60,7 @@ private:
     void add_covered(const RecordStep& step);
     void add_figures(const RecordStep& step, const CheckedStep& checked);
     void note(const RecordStep& step, Status status, const std::string& what);
-    void note_lost(std::int64_t trial, double nees_ratio);
+    void note_diverged(std::int64_t trial, double nees_ratio);
     void check_end(std::int64_t trial);
     void check_copy(std::int64_t trial);
     void keep_details(std::int64_t trial, std::size_t k, const CheckedStep& checked);
@@ -80,7 +80,7 @@ private:
 
     RecordShape shape_;
     KeptSteps kept_;
-    LostTrials lost_;
+    DivergedTrials diverged_;
     Copies copies_;
     SegmentPlanner* planner_;
     StateSeries all_series_;

@@ -50,7 +50,7 @@ ColumnReport column_report(const ScenarioResults& results, const ArmResults& arm
 
 std::optional<FailureCause> cause_of(const ScenarioResults& results, const ArmResults& arm) {
     const std::vector<std::int64_t>& counts = arm.totals.trials.statuses;
-    const auto first = counts.begin() + static_cast<int>(Status::lost);
+    const auto first = counts.begin() + static_cast<int>(Status::diverged);
     const auto most = std::max_element(first, counts.end());
     if (*most == 0) return std::nullopt;
     FailureCause cause{static_cast<Status>(most - counts.begin()), *most, -1, 0,
@@ -86,7 +86,7 @@ ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, Evid
     report.evidence.moments.reset();  // large, and of no further use
     leave_out_rounded(report.evidence, limits);
     report.failed = report.evidence.left_out;
-    report.lost = report.evidence.lost;
+    report.diverged = report.evidence.diverged;
     report.cause = cause_of(results, arm);
     for (std::size_t c = 0; c < results.columns.size(); ++c)
         if (is_reported(results.columns[c])) report.columns.push_back(column_report(results, arm, c, root_seed));

@@ -23,9 +23,10 @@ void add_troubles(const Report& report, std::vector<std::string>& lines) {
         const std::string trial = std::to_string(trouble.trial);
         lines.push_back("trial " + trial + ", step " + std::to_string(trouble.step + 1) + " ([" + trial + ", " +
                         std::to_string(trouble.step) + "] in the file): " + trouble.what +
-                        (failed(trouble.status)                          ? "; the trial is left out of the numbers."
-                         : report.arms.front().evidence.lost_are_judged ? "."
-                                                                         : "; the trial is left out of the verdict."));
+                        (failed(trouble.status) ? "; the trial is left out of the numbers."
+                         : report.arms.front().evidence.diverged_are_judged
+                             ? "."
+                             : "; the trial is left out of the verdict."));
     }
     std::int64_t failed = 0;
     for (const ArmReport& arm : report.arms) failed += arm.failed_trials();
@@ -33,7 +34,7 @@ void add_troubles(const Report& report, std::vector<std::string>& lines) {
         lines.push_back("... and " + std::to_string(failed - static_cast<std::int64_t>(shown)) + " more trials.");
 }
 
-/// The failed and lost trials at the points of sweeps, whose tables count them, in one line.
+/// The failed and diverged trials at the points of sweeps, whose tables count them, in one line.
 void add_swept_failures(const Report& report, const std::set<std::string>& swept, std::vector<std::string>& lines) {
     const auto share = [](const ArmReport& arm) {
         return static_cast<double>(arm.failed_trials()) / static_cast<double>(arm.trials);
@@ -44,19 +45,19 @@ void add_swept_failures(const Report& report, const std::set<std::string>& swept
             worst = &arm;
     if (worst == nullptr) return;
     const bool many = too_many_failed(worst->failed_trials(), worst->trials, report.limits.failed);
-    lines.push_back((many ? "WARNING: trials failed or are lost at points of a sweep, most, "
-                          : "note: trials failed or are lost at points of a sweep, most, ") +
+    lines.push_back((many ? "WARNING: trials failed or diverged at points of a sweep, most, "
+                          : "note: trials failed or diverged at points of a sweep, most, ") +
                     std::to_string(worst->failed_trials()) + " of " + std::to_string(worst->trials) + ", of " +
                     worst->scenario + "/" + worst->arm +
-                    ". The tables by point count them; failed ones are left out of the numbers, lost ones of the "
+                    ". The tables by point count them; failed ones are left out of the numbers, diverged ones of the "
                     "verdict.");
 }
 
-/// What becomes of lost trials, and which they are.
-std::string lost_text(const Evidence& evidence) {
-    if (evidence.lost_are_judged) return "judged all the same, because they are more than half";
+/// What becomes of diverged trials, and which they are.
+std::string diverged_text(const Evidence& evidence) {
+    if (evidence.diverged_are_judged) return "judged all the same, because they are more than half";
     std::vector<std::string> trials;
-    for (const WorstTrial& one : evidence.lost_trials)
+    for (const WorstTrial& one : evidence.diverged_trials)
         trials.push_back(std::to_string(one.trial) + " (most at step " + std::to_string(one.step) + ")");
     return "left out of the verdict, kept in the columns" +
            (trials.empty() ? "" : "; trial" + std::string(trials.size() == 1 ? " " : "s ") + joined(trials));
@@ -93,20 +94,19 @@ std::string gaps_text(const ArmReport& arm) {
 std::vector<std::string> failure_lines(const std::string& arm, const FailureCounts& counts, double limit,
                                        const FailureWords& words) {
     std::vector<std::string> lines;
-    const std::int64_t failed = counts.left_out + counts.lost;
+    const std::int64_t failed = counts.left_out + counts.diverged;
     const std::string of = " trials of " + arm;
     if (too_many_failed(failed, counts.trials, limit))
         lines.push_back("WARNING: " + std::to_string(failed) + " of " + std::to_string(counts.trials) + of +
-                        (counts.lost == 0       ? " failed and " + words.left_out
-                         : counts.left_out == 0 ? " are lost"
-                                                : " failed or are lost; " + std::to_string(counts.left_out) +
+                        (counts.diverged == 0   ? " failed and " + words.left_out
+                         : counts.left_out == 0 ? " diverged"
+                                                : " failed or diverged; " + std::to_string(counts.left_out) +
                                                       " of them " + words.left_out) +
                         ".");
-    if (counts.lost > 0)
-        lines.push_back("note: " + std::to_string(counts.lost) +
-                        (counts.lost == 1 ? " trial of " + arm + " is" : of + " are") +
-                        " lost (NEES/dim over the run beyond " + short_number(lost_nees_ratio) + "): " + words.lost +
-                        ".");
+    if (counts.diverged > 0)
+        lines.push_back("note: " + std::to_string(counts.diverged) + (counts.diverged == 1 ? " trial of " + arm : of) +
+                        " diverged (NEES/dim over the run beyond " + short_number(diverged_nees_ratio) +
+                        "): " + words.diverged + ".");
     return lines;
 }
 
@@ -116,9 +116,9 @@ std::vector<std::string> warnings_of(const Report& report) {
     add_swept_failures(report, swept, lines);
     for (const ArmReport& arm : report.arms) {
         if (swept.contains(arm.scenario)) continue;
-        const FailureCounts counts{arm.trials, arm.failed, arm.lost};
+        const FailureCounts counts{arm.trials, arm.failed, arm.diverged};
         std::ranges::copy(failure_lines(arm.scenario + "/" + arm.arm, counts, report.limits.failed,
-                                        {"are left out of its numbers", lost_text(arm.evidence)}),
+                                        {"are left out of its numbers", diverged_text(arm.evidence)}),
                           std::back_inserter(lines));
     }
     for (const ArmReport& arm : report.arms)

@@ -23,8 +23,8 @@ std::string ratio_text(double value) {
 
 /// The distance of a finding from the value of a consistent filter.
 double distance_off(const Finding& finding) {
-    const bool about_0 = finding.about == Subject::bias || finding.about == Subject::tenth ||
-                         finding.about == Subject::whiteness;
+    const bool about_0 =
+        finding.about == Subject::bias || finding.about == Subject::window || finding.about == Subject::whiteness;
     return about_0 ? std::abs(finding.value) : std::abs(std::log(finding.value));
 }
 
@@ -67,11 +67,10 @@ std::string cause_text(const ArmReport& arm) {
 std::string failed_text(const ArmReport& arm) {
     if (arm.consistency.verdict != Verdict::failed) return {};
     return std::to_string(arm.failed_trials()) + " of " + std::to_string(arm.trials) +
-           (arm.lost == 0     ? " trials failed"
-            : arm.failed == 0 ? " trials are lost"
-                              : " trials failed or are lost") +
-           ", more than " +
-           short_number(100 * arm.consistency.limits.failed) + " %" + cause_text(arm);
+           (arm.diverged == 0 ? " trials failed"
+            : arm.failed == 0 ? " trials diverged"
+                              : " trials failed or diverged") +
+           ", more than " + short_number(100 * arm.consistency.limits.failed) + " %" + cause_text(arm);
 }
 
 /// `450 trials`, or of a log `450 segments, 24300 steps,`

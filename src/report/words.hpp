@@ -45,24 +45,24 @@ inline std::string no_trials_note() {
 
 /// An arm's trials, and how many of them failed.
 struct FailureCounts {
-    std::int64_t trials = 0, left_out = 0, lost = 0;
+    std::int64_t trials = 0, left_out = 0, diverged = 0;
 };
-/// How failed trials are treated, such as `are left out of its numbers`, and lost ones, such as `left out, too`.
+/// How failed trials are treated, such as `are left out of its numbers`, and diverged ones, such as `left out, too`.
 struct FailureWords {
-    std::string left_out, lost;
+    std::string left_out, diverged;
 };
-/// A warning where more than `limit` of an arm's trials failed, and a note where some are lost.
+/// A warning where more than `limit` of an arm's trials failed, and a note where some diverged.
 std::vector<std::string> failure_lines(const std::string& arm, const FailureCounts& counts, double limit,
                                        const FailureWords& words);
 
-/// The warnings before everything else: failed and lost trials, troubles of a record, a study that is not complete
+/// The warnings before everything else: failed and diverged trials, troubles of a record, a study that is not complete
 /// or keeps no trials.
 std::vector<std::string> warnings_of(const Report& report);
 
 /// An arm's verdict, and how many of its trials failed; `-` where it has not run yet.
 Cell verdict_cell(const ArmReport& arm);
 Cell failed_cell(const ArmReport& arm);
-/// The upper bound on the share of trials that fail or are lost: `at most 1 %`; empty where there is none.
+/// The upper bound on the share of trials that fail or diverge: `at most 1 %`; empty where there is none.
 std::string unseen_text(const ArmReport& arm);
 
 /// The column of that name; the first one where there is none.

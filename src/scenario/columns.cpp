@@ -7,7 +7,7 @@
 namespace credence {
 
 const std::vector<std::string>& status_names() {
-    static const std::vector<std::string> names{"completed", "lost", "covariance_not_positive_definite",
+    static const std::vector<std::string> names{"completed", "diverged", "covariance_not_positive_definite",
                                                 "non_finite"};
     return names;
 }

@@ -10,7 +10,7 @@ namespace credence {
 namespace levels {
 inline constexpr double run = 0.03;          ///< NEES over all steps
 inline constexpr double step = 0.00125;      ///< NEES at one step
-inline constexpr double calibration = 0.00125;  ///< NEES of a fifth of the trials
+inline constexpr double calibration = 0.00125;  ///< NEES of a quintile of the trials
 inline constexpr double direction = 0.015;   ///< directions
 inline constexpr double bias = 0.0025;       ///< bias
 inline constexpr double acceptance = 0.025;  ///< each side of an acceptance, not shared: all acceptances must hold

@@ -48,15 +48,15 @@ std::int64_t TrialTotals::trials() const {
 }
 
 std::int64_t TrialTotals::counted() const {
-    return statuses[static_cast<std::size_t>(Status::completed)] + (lost_count ? lost() : 0);
+    return statuses[static_cast<std::size_t>(Status::completed)] + (diverged_count ? diverged() : 0);
 }
 
-std::int64_t TrialTotals::lost() const { return statuses[static_cast<std::size_t>(Status::lost)]; }
+std::int64_t TrialTotals::diverged() const { return statuses[static_cast<std::size_t>(Status::diverged)]; }
 
 bool is_reported(const Column& column) { return column.type != ColumnType::status && column.name != "status_pose"; }
 
 const char* problem_of(const TrialTotals& all) {
-    const std::int64_t with_columns = all.counted() + all.lost();
+    const std::int64_t with_columns = all.counted() + all.diverged();
     const auto none_of = [](std::int64_t count, std::int64_t most) { return count < 0 || count > most; };
     for (const std::int64_t trials : all.statuses)
         if (trials < 0) return "a number of trials is below 0";

@@ -226,7 +226,7 @@ std::string few_of(const Evidence& evidence, const Limits& limits) {
 std::string divergence_of(const Evidence& evidence) {
     if (evidence.groups.empty()) return {};
     const GroupEvidence& state = evidence.groups.front();
-    if (!(state.run.mean > lost_nees_ratio) || state.step.size() < 2) return {};
+    if (!(state.run.mean > diverged_nees_ratio) || state.step.size() < 2) return {};
     constexpr double many = 20;  // runs: one of them may have small errors at first by chance
     const bool are_many = state.step.front().count >= many;
     const auto some = std::max<std::ptrdiff_t>(1, std::ssize(state.step) / 5);

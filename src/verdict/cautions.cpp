@@ -71,7 +71,7 @@ void caution_about_distribution(const Evidence& evidence, Consistency& verdict) 
         if (distance.value > worst.value) worst = distance;
     }
     if (!steps.empty())
-        verdict.cautions.push_back({Subject::distribution, Fault::misshapen, evidence.groups.front().name,
+        verdict.cautions.push_back({Subject::distribution, Fault::non_chi_square, evidence.groups.front().name,
                                     steps_text(steps), worst.value, worst.interval(), "distance from chi-square"});
 }
 

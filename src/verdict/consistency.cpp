@@ -79,8 +79,8 @@ Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
     judge_directions(evidence, judgement);
     judge_bias(evidence, judgement);
     judge_innovations(evidence, judgement);
-    judge_tenths(evidence, judgement);
-    judge_fifths(evidence, judgement);
+    judge_windows(evidence, judgement);
+    judge_quintiles(evidence, judgement);
     if (evidence.segments.count) judge_segments(evidence, judgement);
     else judge_few_runs(evidence, judgement);
     if (const std::string repeated = repeated_trials(evidence); !repeated.empty()) judgement.not_shown(repeated, false);
@@ -193,13 +193,13 @@ const std::string& verdict_name(Verdict verdict) {
 }
 
 const std::string& fault_name(Fault fault) {
-    static const std::string names[] = {"optimistic", "pessimistic", "biased", "correlated", "misshapen"};
+    static const std::string names[] = {"optimistic", "pessimistic", "biased", "correlated", "non-chi-square"};
     return names[static_cast<std::size_t>(fault)];
 }
 
 const std::string& subject_name(Subject subject) {
     static const std::string names[] = {"size",      "step",         "direction", "bias",        "innovations",
-                                        "whiteness", "distribution", "tenth",     "calibration", "offset"};
+                                        "whiteness", "distribution", "window",    "calibration", "offset"};
     return names[static_cast<int>(subject)];
 }
 
@@ -227,7 +227,7 @@ std::string when_text(const Finding& finding) {
 
 std::string sentence(const Finding& finding) {
     const bool of_component =
-        finding.about == Subject::bias || finding.about == Subject::tenth || finding.about == Subject::offset;
+        finding.about == Subject::bias || finding.about == Subject::window || finding.about == Subject::offset;
     const std::string where = (of_component ? "component " : "") + finding.where;
     return fault_name(finding.what) + ": " + where + ", " + when_text(finding) + ", " + finding.measure +
            formatted(" %.3g (%.3g to %.3g)", finding.value, finding.interval.low, finding.interval.high);

@@ -60,8 +60,8 @@ void caution_about_distribution(const Evidence& evidence, Consistency& verdict);
 /// Sentences on what findings such as these often come from, by the size of the errors beside P's.
 std::vector<std::string> causes_of(const Evidence& evidence, const Limits& limits);
 
-/// A sentence on NEES that grows beyond that of a lost trial, which it does not where a factor on P or a unit is wrong
-/// from the start; empty where it does not.
+/// A sentence on NEES that grows beyond that of a diverged trial, which it does not where a factor on P or a unit is
+/// wrong from the start; empty where it does not.
 std::string divergence_of(const Evidence& evidence);
 
 /// A sentence on two detailed trials that are the same; empty where there are none.

@@ -108,7 +108,7 @@ std::int64_t trial_of(const ScenarioResults& results, std::size_t row) {
     return results.blocks.empty() ? place : trial_numbers(results, place, 1).front();
 }
 
-/// The largest error of the detailed trials, lost ones too, by component.
+/// The largest error of the detailed trials, diverged ones too, by component.
 void add_largest_errors(const ArmResults& arm, std::vector<BiasEvidence>& bias) {
     for (std::size_t i = 0; i < arm.errors.size(); ++i)
         if (double& largest = bias[i % bias.size()].largest_error; std::abs(arm.errors[i]) > largest)
@@ -221,10 +221,10 @@ WorstTrials worst_trials(const ScenarioResults& results, const ArmResults& arm) 
     return worst;
 }
 
-/// The arm without the details of its lost trials, which are returned.
-std::vector<WorstTrial> set_lost_aside(const ScenarioResults& results, ArmResults& arm) {
+/// The arm without the details of its diverged trials, which are returned.
+std::vector<WorstTrial> set_diverged_aside(const ScenarioResults& results, ArmResults& arm) {
     const auto steps = static_cast<std::size_t>(results.steps());
-    std::vector<WorstTrial> lost;
+    std::vector<WorstTrial> diverged;
     const auto forget = [&](std::vector<double>& values, std::size_t row) {
         const std::size_t width = values.size() / (arm.nees.size() / steps);
         std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(row * width), width, nan);
@@ -234,25 +234,25 @@ std::vector<WorstTrial> set_lost_aside(const ScenarioResults& results, ArmResult
         const auto first = arm.nees.begin() + static_cast<std::ptrdiff_t>(row * steps);
         one.nees.assign(first, first + static_cast<std::ptrdiff_t>(steps));
         for (WorstTrial& trial : trials_by_nees(results, one)) {
-            if (!(trial.nees_ratio > lost_nees_ratio)) continue;
+            if (!(trial.nees_ratio > diverged_nees_ratio)) continue;
             trial.trial = trial_of(results, row);
-            lost.push_back(trial);
+            diverged.push_back(trial);
             forget(arm.nees, row);
             forget(arm.errors, row);
             forget(arm.moments, row);
         }
     }
-    keep_worst(lost);
-    return lost;
+    keep_worst(diverged);
+    return diverged;
 }
 
-/// Where more than half of the trials are lost, the filter as a whole is judged, by the detailed trials: the totals are
+/// Where more than half of the trials diverged, the filter as a whole is judged, by the detailed trials: the totals are
 /// of the others alone, and the whole state is what the details have by step.
-void judge_lost(const ScenarioResults& results, const ArmResults& arm, Evidence& evidence) {
+void judge_diverged(const ScenarioResults& results, const ArmResults& arm, Evidence& evidence) {
     if (!evidence.moments) return;
     const TrialMoments& trials = *evidence.moments;
-    evidence.trials += evidence.lost;
-    evidence.lost_are_judged = true;
+    evidence.trials += evidence.diverged;
+    evidence.diverged_are_judged = true;
     for (BiasEvidence& bias : evidence.bias) bias.mean_square.clear();  // its P is that of the others
     for (int g = 0; g < trials.groups; ++g)
         evidence.groups[static_cast<std::size_t>(g)].run =
@@ -322,8 +322,8 @@ void count_trials(const ScenarioResults& results, const ArmResults& arm, Evidenc
     const std::vector<std::int64_t>& statuses = arm.totals.trials.statuses;
     for (std::size_t status = 0; status < statuses.size(); ++status)
         if (failed(static_cast<Status>(status))) evidence.left_out += statuses[status];
-    evidence.lost = arm.totals.trials.lost();
-    evidence.lost_are_judged = arm.totals.trials.lost_count && evidence.lost > 0;
+    evidence.diverged = arm.totals.trials.diverged();
+    evidence.diverged_are_judged = arm.totals.trials.diverged_count && evidence.diverged > 0;
 }
 
 }  // namespace
@@ -358,7 +358,7 @@ Evidence evidence_of_counted(const ScenarioResults& results, const ArmResults& a
     evidence.credibility = credibility_evidence(results, arm);
     evidence.worst = worst_trials(results, arm);
     add_error_sizes(results, arm, evidence.bias);
-    evidence.fifths = fifths_by_size(results, arm);
+    evidence.quintiles = quintiles_by_size(results, arm);
     evidence.moments = trial_moments(results, arm, evidence.groups);
     add_squares(evidence);
     evidence.epsilon = results.epsilon;
@@ -370,16 +370,16 @@ Evidence evidence_of_counted(const ScenarioResults& results, const ArmResults& a
 
 Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     const TrialTotals& trials = arm.totals.trials;
-    if (trials.lost() == 0 || trials.lost_count) return evidence_of_counted(results, arm);
-    if (trials.lost() > trials.counted()) {
+    if (trials.diverged() == 0 || trials.diverged_count) return evidence_of_counted(results, arm);
+    if (trials.diverged() > trials.counted()) {
         Evidence evidence = evidence_of_counted(results, arm);
-        judge_lost(results, arm, evidence);
+        judge_diverged(results, arm, evidence);
         return evidence;
     }
     ArmResults others = arm;
-    const std::vector<WorstTrial> lost = set_lost_aside(results, others);
+    const std::vector<WorstTrial> diverged = set_diverged_aside(results, others);
     Evidence evidence = evidence_of_counted(results, others);
-    evidence.lost_trials = lost;
+    evidence.diverged_trials = diverged;
     if (evidence.bias.size() == static_cast<std::size_t>(results.state_size())) add_largest_errors(arm, evidence.bias);
     return evidence;
 }

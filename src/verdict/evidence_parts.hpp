@@ -20,9 +20,9 @@ GroupEvidence group_evidence(const ScenarioResults& results, const ArmResults& a
 /// The group and chart of the series f of role nees_in_chart.
 ChartEvidence chart_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
 
-/// NEES/n of each fifth of the trials by their mean log det P, the smallest first: moments over its trials. Empty if P
-/// hardly varies, for fewer than 100 trials, and where trials are not kept.
-std::vector<Moments> fifths_by_size(const ScenarioResults& results, const ArmResults& arm);
+/// NEES/n of each quintile of the trials by their mean log det P, the smallest first: moments over its trials. Empty if
+/// P hardly varies, for fewer than 100 trials, and where trials are not kept.
+std::vector<Moments> quintiles_by_size(const ScenarioResults& results, const ArmResults& arm);
 
 /// Sets what rounding may have done to each group's NEES.
 void add_rounding(const ArmResults& arm, Evidence& evidence);

@@ -106,12 +106,12 @@ void judge_directions(const Evidence& evidence, Judgement& judgement);
 /// Mean errors against the margin of the bias, in sigmas.
 void judge_bias(const Evidence& evidence, Judgement& judgement);
 
-/// Every tenth of the steps, from 50 on: withholds `consistent` where NEES/dimension or a mean error is beyond three
+/// Every window of the steps, from 50 on: withholds `consistent` where NEES/dimension or a mean error is beyond three
 /// times its margin, and finds the latter where it is shown.
-void judge_tenths(const Evidence& evidence, Judgement& judgement);
+void judge_windows(const Evidence& evidence, Judgement& judgement);
 
-/// NEES/dimension of the whole state in every fifth of the trials by their P, against three times its margin.
-void judge_fifths(const Evidence& evidence, Judgement& judgement);
+/// NEES/dimension of the whole state in every quintile of the trials by their P, against three times its margin.
+void judge_quintiles(const Evidence& evidence, Judgement& judgement);
 
 /// Withholds `consistent` where segments of runs depend on each other, or runs differ.
 void judge_segments(const Evidence& evidence, Judgement& judgement);

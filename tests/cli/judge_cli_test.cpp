@@ -35,7 +35,7 @@ void write_correlated(const std::string& path, double correlation, double scale,
 
 /// Errors of 3 independent components of unit variance over 6 steps, and P = I, to be spoilt and written.
 struct PlainRecord {
-    static constexpr std::size_t trials = 2000, steps = 6, n = 3;
+    static constexpr std::size_t trials = 2000, steps = 7, n = 3;
     std::vector<double> error, covariance;
 
     explicit PlainRecord(unsigned seed) {
@@ -81,10 +81,10 @@ const std::vector<std::pair<const char*, Spoil>> spoils{
     {"P is NaN", [](PlainRecord& r, std::size_t trial) { r.P(trial, 3)[4] = std::nan(""); }},
     {"P is negative", [](PlainRecord& r, std::size_t trial) { r.P(trial, 3)[4] = -1; }},
     {"P is singular", [](PlainRecord& r, std::size_t trial) { std::fill_n(r.P(trial, 3), 9, 1.0); }},
-    {"lost", [](PlainRecord& r, std::size_t trial) { r.e(trial, 3)[1] = 1e13; }},
+    {"diverged", [](PlainRecord& r, std::size_t trial) { r.e(trial, 3)[1] = 1e13; }},
     {"cut short", [](PlainRecord& r, std::size_t trial) {
-         std::fill(r.e(trial, 3), r.e(trial, 5) + 3, std::nan(""));
-         std::fill(r.P(trial, 3), r.P(trial, 5) + 9, std::nan(""));
+         std::fill(r.e(trial, 3), r.e(trial, 6) + 3, std::nan(""));
+         std::fill(r.P(trial, 3), r.P(trial, 6) + 9, std::nan(""));
      }}};
 
 }  // namespace
@@ -156,11 +156,11 @@ TEST_CASE("judge: the trials with the largest NEES are named with their steps") 
             set_value(root, "error", (trial * 10 + 3) * 2, trial == 17 ? error : error - 1);
         return Json::parse(here.credence("judge a.h5 --quiet --format json").out)[0];
     };
-    const Json lost = with(40, 0);
-    CHECK(lost["lost"] == 1);
-    CHECK(lost["may_be_unseen"].get<double>() == Approx(0.0157).margin(1e-4));  // Clopper and Pearson, 1 of 300
+    const Json diverged = with(40, 0);
+    CHECK(diverged["diverged"] == 1);
+    CHECK(diverged["may_be_unseen"].get<double>() == Approx(0.0157).margin(1e-4));  // Clopper and Pearson, 1 of 300
     CHECK_THAT(here.credence("judge a.h5 --quiet").out,
-               Contains("note: 1 trial of a/record is lost (NEES/dim over the run beyond 25)") &&
+               Contains("note: 1 trial of a/record diverged (NEES/dim over the run beyond 25)") &&
                    Contains("trial 17 (most at step 4)") && Contains(" 1 (at most 1.6 %)"));
     const Json worst = with(21, 5)["worst_trials"];
     CHECK(worst["trials"].size() == 10);

@@ -202,7 +202,7 @@ TEST_CASE("judge: of components that no trial has together, the reason says why 
     CHECK_THAT(
         apart["reason"].get<std::string>(),
         Contains(
-            "directions need 200 trials in which every two components are in the state together, and there are 0"));
+            "directions need 20 trials in which every two components are in the state together, and there are 0"));
 }
 
 TEST_CASE("judge: what looks wrong and is not shown comes with the number of trials that would show it") {

@@ -35,7 +35,7 @@ std::vector<Settings> worlds() {
     return all;
 }
 
-/// A world in which some trials fail, some are lost and some are neither: the heading is unknown after a step.
+/// A world in which some trials fail, some diverged and some are neither: the heading is unknown after a step.
 const Settings fragile{{"noise.heading", "1e9"}, {"filter.covariance", "10"}, {"arms.controllers", "fixed"},
                        {"scenario.poses", "3"}};
 

@@ -190,7 +190,7 @@ TEST_CASE("store: what outside tools need to know is in the file") {
         return hdf5::Handle(H5Dopen2(group.id(), name, H5P_DEFAULT), H5Dclose, name, "missing");
     };
     CHECK(hdf5::read_text(variable("status"), "flag_meanings") ==
-          "completed lost covariance_not_positive_definite non_finite");
+          "completed diverged covariance_not_positive_definite non_finite");
     CHECK(hdf5::read_text(variable("trace_P"), "units") == "dm^2 + rad^2");
     CHECK(hdf5::read_text(variable("trace_P_step_square_total"), "units") == "(dm^2 + rad^2)^2");
     CHECK(hdf5::read_text(variable("nees_pose_total"), "role") == "nees");

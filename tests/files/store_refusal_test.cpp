@@ -15,7 +15,7 @@ const std::string arm = "/first/greedy.ekf";
 const std::vector<Damage> header_damages{
     {"is not a results file", with_text("/", "format", "credence trajectories")},
     {"is not a results file", without_attribute("/", "format")},
-    {"/@schema_version: is 9, this program's is 4", with_number<std::int32_t>("/", "schema_version", 9)},
+    {"/@schema_version: is 9, this program's is 5", with_number<std::int32_t>("/", "schema_version", 9)},
     {"/@schema_version: holds 64-bit integers, not 32-bit", with_number<std::int64_t>("/", "schema_version", 1)},
     {"/@schema_version: is missing", without_attribute("/", "schema_version")},
     {"/@root_seed_text: is not root_seed=", with_text("/", "root_seed_text", "7")},

@@ -265,7 +265,7 @@ TEST_CASE("sweep: failed trials of all points are one note, and a page folds wha
     REQUIRE(failed > 3);
     const std::vector<std::string> notes = warnings_of(grid);
     REQUIRE(notes.size() == 1);
-    CHECK_THAT(notes.front(), Contains("WARNING: trials failed or are lost at points of a sweep, most, ") &&
+    CHECK_THAT(notes.front(), Contains("WARNING: trials failed or diverged at points of a sweep, most, ") &&
                                   Contains(" of 300, of base_heading-"));
     CHECK_THAT(report_html(grid, {"r.h5", {}, "test"}), !Contains(" more note"));
 
@@ -275,7 +275,7 @@ TEST_CASE("sweep: failed trials of all points are one note, and a page folds wha
     REQUIRE(count > 5);
     const std::string page = report_html(alone, {"r.h5", {}, "test"});
     REQUIRE_THAT(page, Contains("<summary>" + std::to_string(count - 5) + " more note"));
-    CHECK(page.find("are lost (NEES/dim") < page.find("<details"));
+    CHECK(page.find("diverged (NEES/dim") < page.find("<details"));
 }
 
 }  // namespace credence::test::sweep_run_test

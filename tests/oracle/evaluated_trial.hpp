@@ -94,7 +94,7 @@ public:
             status_ = Status::non_finite;
             status_pose_ = static_cast<int>(step_);
         }
-        if (status_ == Status::completed && nees_ratio() > lost_nees_ratio) status_ = Status::lost;
+        if (status_ == Status::completed && nees_ratio() > diverged_nees_ratio) status_ = Status::diverged;
     }
 
     std::size_t arm() const override { return arm_; }

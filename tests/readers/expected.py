@@ -19,7 +19,7 @@ quantities:
 import json
 import sys
 
-STATUS = "completed lost covariance_not_positive_definite non_finite"
+STATUS = "completed diverged covariance_not_positive_definite non_finite"
 
 
 def of_study(arm):

@@ -150,7 +150,7 @@ TEST_CASE("record: singular and indefinite covariances fail their trial and are 
 
 TEST_CASE("record: what is not finite, and what is NaN in the error or the covariance alone, fails its trial") {
     const Record record = check_reference("broken");
-    CHECK(record.trouble_count == 10);  // an error of 2e12 is not lost in so short a trial
+    CHECK(record.trouble_count == 10);  // an error of 2e12 did not diverge in so short a trial
     CHECK(record.results.arms.front().totals.trials.counted() == 10);
 }
 

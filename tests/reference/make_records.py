@@ -118,9 +118,9 @@ def broken(rng):
     record.covariance[6, 1, 1, 1] = np.nan
     record.innovation[7, 3, 1] = np.inf
     record.innovation_covariance[8, 3, 0, 1] = np.nan
-    record.error[9, 3, 0] = 2e12                       # lost
+    record.error[9, 3, 0] = 2e12                       # diverged
     record.covariance[10, 3:] *= 2.0**50               # large, and nothing else
-    record.error[11, 1, 0] = 2e12                      # lost, were it not for the next
+    record.error[11, 1, 0] = 2e12                      # diverged, were it not for the next
     record.covariance[11, 4] = 0
     record.error[12, 4] = record.covariance[12, 4] = np.nan
     record.error[12, 2] = record.covariance[12, 2] = np.nan

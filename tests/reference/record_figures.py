@@ -61,21 +61,21 @@ class Expected:
         if record.innovation is not None:
             self.compute_innovations()
         self.counted = ~self.failed
-        self.set_lost_aside()
+        self.set_diverged_aside()
 
-    def set_lost_aside(self):
-        """Unless more than half are lost. A trial of fewer than 20 numbers is not."""
+    def set_diverged_aside(self):
+        """Unless more than half diverged. A trial of fewer than 20 numbers is not."""
         nees = self.values["nees", "all"]
         ratio = np.full(self.trials, np.nan)
         ratio[~self.failed] = np.nanmean(nees[~self.failed], axis=1) / self.n
-        lost = np.flatnonzero((ratio > 25) & (self.there.sum(axis=1) * self.n >= 20))
-        if 2 * len(lost) > (~self.failed).sum():
+        diverged = np.flatnonzero((ratio > 25) & (self.there.sum(axis=1) * self.n >= 20))
+        if 2 * len(diverged) > (~self.failed).sum():
             return
         self.troubles += [[trial, int(np.nanargmax(nees[trial])),
-                           f"the trial is lost: NEES/dim {ratio[trial]:.3g} over its steps, most here", 1]
-                          for trial in lost]
+                           f"the trial diverged: NEES/dim {ratio[trial]:.3g} over its steps, most here", 1]
+                          for trial in diverged]
         self.troubles.sort(key=lambda trouble: trouble[0])
-        self.counted[lost] = False
+        self.counted[diverged] = False
 
     def find_troubles(self):
         """[trial, step, what, status] of the first trouble of each trial that has one."""

@@ -16,7 +16,7 @@ namespace credence::test::approved_test {
 
 namespace {
 
-/// A scenario by itself, with failed and lost trials and a published value, and two points of a sweep.
+/// A scenario by itself, with failed and diverged trials and a published value, and two points of a sweep.
 const Study& small_study() {
     static const Study study = [] {
         const std::string world = "[scenario]\nposes = 3\n[features]\npositions = 0.5 0.5\n[edges]\ngraph = none\n" +
@@ -29,7 +29,8 @@ const Study& small_study() {
         Study run = new_study(scenarios, 1);
         run_study(run, {300, 1, {}});
         fail_trials(run.scenarios.front(), 0, 0, 4);
-        run.scenarios.front().arms.front().columns.in_memory()[column_status][9] = static_cast<double>(Status::lost);
+        run.scenarios.front().arms.front().columns.in_memory()[column_status][9] =
+            static_cast<double>(Status::diverged);
         recount(run.scenarios.front());
         return run;
     }();

@@ -154,21 +154,21 @@ TEST_CASE("compare: trials that failed in one arm are no pairs, and the text say
     Study study = small_study(1, 300, 1);
     fail_trials(study.scenarios[0], 0, 0, 20);
     fail_trials(study.scenarios[0], 1, 10, 20);
-    study.scenarios[0].arms[0].columns.in_memory()[column_status][100] = static_cast<double>(Status::lost);
+    study.scenarios[0].arms[0].columns.in_memory()[column_status][100] = static_cast<double>(Status::diverged);
     recount(study.scenarios[0]);
     const CompareReport report = compare_studies({{"failed.h5", study}}, std::nullopt);
     const ComparedPair& pair = report.pairs[0];
     CHECK(pair.pairs() == 270);
     CHECK(pair.a.failed == 20);
     CHECK(pair.b.failed == 20);
-    CHECK(pair.b.lost == 1);
+    CHECK(pair.b.diverged == 1);
     for (std::size_t c = 0; c < 8; ++c)
         CHECK(pair.a.mean[c] - pair.b.mean[c] ==
               Approx(of(pair, static_cast<int>(c)).difference.mean).epsilon(1e-9).margin(1e-12));
     const std::string text = compare_text(report);
     CHECK_THAT(text, Contains("A - B, trial by trial: 270 to 300 pairs in each of 2 comparisons") &&
                          Contains("WARNING: 20 of 300 trials of heading-straight/greedy.ekf failed") &&
-                         Contains("note: 1 trial of heading-straight/fixed.ekf is lost"));
+                         Contains("note: 1 trial of heading-straight/fixed.ekf diverged"));
     CHECK(text.find("WARNING") < text.find("trace_P:"));
     fail_trials(study.scenarios[0], 0, 0, 300);
     const CompareReport none =

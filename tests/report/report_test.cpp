@@ -68,15 +68,15 @@ TEST_CASE("report: where trials failed it says with which status, and at which p
     CHECK_FALSE(arms.back().contains("failed_most"));
 }
 
-TEST_CASE("report: lost trials stay in the columns and are named") {
+TEST_CASE("report: diverged trials stay in the columns and are named") {
     Study study = small_study(1, 300, 1);
-    study.scenarios.front().arms.front().columns.in_memory()[column_status][7] = static_cast<double>(Status::lost);
+    study.scenarios.front().arms.front().columns.in_memory()[column_status][7] = static_cast<double>(Status::diverged);
     recount(study.scenarios.front());
     const Report report = report_either_way(study, 0.05);
-    CHECK(report.arms.front().lost == 1);
+    CHECK(report.arms.front().diverged == 1);
     CHECK(report.arms.front().failed == 0);
     CHECK(report.arms.front().columns.front().summary.count == 300);
-    CHECK_THAT(report_text(report), Contains("1 trial of heading-straight/fixed.ekf is lost"));
+    CHECK_THAT(report_text(report), Contains("1 trial of heading-straight/fixed.ekf diverged"));
 }
 
 TEST_CASE("report: a published value is shown at its percentile") {

@@ -78,7 +78,7 @@ TEST_CASE("watch: failed trials are counted and left out of every mean") {
     for (std::size_t s = 0; s < study.scenarios.size(); ++s)
         for (const WatchedArm& arm : snapshot.scenarios[s].arms) {
             CHECK(arm.failed == 1);
-            CHECK(arm.lost == 1);
+            CHECK(arm.diverged == 1);
             CHECK(arm.columns.front().count == 4);
         }
 }

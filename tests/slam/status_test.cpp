@@ -11,7 +11,7 @@ namespace credence::test::status_test {
 
 namespace {
 
-constexpr double completed = 0, lost = 1, not_positive_definite = 2, non_finite = 3;
+constexpr double completed = 0, diverged = 1, not_positive_definite = 2, non_finite = 3;
 
 Run run_with(const DeformableSettings& scenario, const AnyNoise& noise) {
     return run_arm(scenario, Controller::fixed, noise);
@@ -37,11 +37,11 @@ const Settings overconfident{{"filter.measurement", "0.1"}, {"filter.odometry", 
 
 TEST_CASE("status: numbers and names of the statuses") {
     CHECK(status_names() ==
-          std::vector<std::string>{"completed", "lost", "covariance_not_positive_definite", "non_finite"});
+          std::vector<std::string>{"completed", "diverged", "covariance_not_positive_definite", "non_finite"});
     CHECK_FALSE(failed(Status::completed));
-    CHECK_FALSE(failed(Status::lost));
+    CHECK_FALSE(failed(Status::diverged));
     CHECK(counts(Status::completed));
-    CHECK_FALSE(counts(Status::lost));
+    CHECK_FALSE(counts(Status::diverged));
     CHECK(failed(Status::covariance_not_positive_definite));
     CHECK(failed(Status::non_finite));
 }
@@ -61,7 +61,7 @@ TEST_CASE("status: a draw that is no number is noticed at its pose, for good") {
     }
 }
 
-TEST_CASE("status: a heading that is lost by 10^4 times the sensor's sigma does not make an exact filter fail") {
+TEST_CASE("status: a heading that is off by 10^4 times the sensor's sigma does not make an exact filter fail") {
     for (const char* sigma : {"1e-9", "5e-9"})
         for (const char* estimator : {"ekf", "iekf", "fej", "riekf", "ideal"}) {
             const DeformableSettings scenario = scenario_with(
@@ -91,19 +91,19 @@ TEST_CASE("status: a feature whose truth is no number is not seen, and the trial
     CHECK(run.steps.back().mean.allFinite());  // the filter never knew
 }
 
-TEST_CASE("status: a trial whose NEES/n is beyond 25 is lost, and keeps its columns") {
+TEST_CASE("status: a trial whose NEES/n is beyond 25 diverged, and keeps its columns") {
     const DeformableSettings scenario = scenario_with(overconfident);
     const Run run = run_with(scenario, keyed_noise(scenario, 61, 1));
-    check_status(run, lost, -1);
-    CHECK(run.columns[column_nees_ratio] > lost_nees_ratio);
+    check_status(run, diverged, -1);
+    CHECK(run.columns[column_nees_ratio] > diverged_nees_ratio);
     CHECK(run.figures.allFinite());
     std::vector<double> columns = run.columns;
     CHECK_FALSE(fill_failed(trial_columns(scenario), columns.data()));
     CHECK(columns == run.columns);
-    for (const double ratio : {lost_nees_ratio, std::nextafter(lost_nees_ratio, infinity)}) {
+    for (const double ratio : {diverged_nees_ratio, std::nextafter(diverged_nees_ratio, infinity)}) {
         Outcome<double> outcome;
-        outcome.note_lost(ratio, least_lost_numbers);
-        CHECK(outcome.status == (ratio > lost_nees_ratio ? lost : completed));
+        outcome.note_diverged(ratio, least_diverged_numbers);
+        CHECK(outcome.status == (ratio > diverged_nees_ratio ? diverged : completed));
         CHECK(outcome.pose == -1);
     }
 }
@@ -116,7 +116,7 @@ TEST_CASE("status: no size of P or of an error fails a trial in which all is fin
     CHECK(run.columns[column_trace_P] > 1e12);
 }
 
-TEST_CASE("status: a trial that would be lost may fail, and a trial that failed stays so") {
+TEST_CASE("status: a trial that would diverge may fail, and a trial that failed stays so") {
     const DeformableSettings scenario = scenario_with(overconfident);
     const AnyNoise noise = keyed_noise(scenario, 61, 1);
     check_status(run_with(scenario, with_draw(noise, Source::walk, 7, 0, {not_a_number, 0})), non_finite, 8);
@@ -125,7 +125,7 @@ TEST_CASE("status: a trial that would be lost may fail, and a trial that failed 
     CHECK(outcome.status == completed);
     outcome.note(true, Status::covariance_not_positive_definite, 4);
     outcome.note(true, Status::non_finite, 5);
-    outcome.note_lost(1e9, least_lost_numbers);
+    outcome.note_diverged(1e9, least_diverged_numbers);
     CHECK(outcome.status == not_positive_definite);
     CHECK(outcome.pose == 4);
 }

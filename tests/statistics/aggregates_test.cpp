@@ -182,7 +182,7 @@ TEST_CASE("aggregates: failed trials and missing values are in no sum, and break
     const std::vector<TrialTotals> arms = totals_of(columns, block);
     CHECK(arms[0].statuses == std::vector<std::int64_t>{3, 1, 1, 0});
     CHECK(arms[0].counted() == 3);
-    CHECK(arms[0].lost() == 1);
+    CHECK(arms[0].diverged() == 1);
     CHECK(arms[0].columns[column_unseen].sum.rounded() == 1 + 2 + 3 + 4);
     CHECK(arms[0].columns[column_nis_ratio].count == 3);
     CHECK(arms[0].columns[column_nis_ratio].square_sum.rounded() == 1 + 4 + 9);

@@ -92,7 +92,7 @@ TEST_CASE("results: the order of the blocks does not matter") {
     CHECK(forwards.arms[0].totals.trials.counted() < 700);
 }
 
-TEST_CASE("results: totals are those of the trials that neither failed nor are lost") {
+TEST_CASE("results: totals are those of the trials that neither failed nor diverged") {
     const DeformableSettings scenario = mixed_world();
     const ScenarioResults results = results_of(scenario, 300);
     double sum = 0;

@@ -23,9 +23,9 @@ struct Halves {
     static std::vector<std::string> arms(const Settings&) { return {"halves", "some_lost", "right"}; }
     static int innovation_rows(const Settings&) { return 0; }
     static void run(const Settings&, OwnTrial& trial) {
-        enum Source { walk, half, lost };
+        enum Source { walk, half, diverged };
         const double P = trial.arm() == 2 ? 1 : trial.uniform(half, 0) < 0.5 ? 2.0 / 3 : 2;
-        const double size = trial.arm() == 1 && trial.uniform(lost, 0) < 0.003 ? 100 : 1;
+        const double size = trial.arm() == 1 && trial.uniform(diverged, 0) < 0.003 ? 100 : 1;
         for (int k = 1; k < trial.poses(); ++k)
             trial.step(size * trial.normal(walk, k), P * Eigen::Matrix2d::Identity());
     }
@@ -49,8 +49,8 @@ TEST_CASE("calibration given P: what a mean over all trials hides is found in me
         for (const Finding& finding : found.findings) CHECK(finding.about == Subject::calibration);
         CHECK(report.arms[arm].evidence.groups.front().run.mean == Approx(1).margin(0.03));
     }
-    CHECK(report.arms[0].lost == 0);
-    CHECK(report.arms[1].lost > 3);
+    CHECK(report.arms[0].diverged == 0);
+    CHECK(report.arms[1].diverged > 3);
     CHECK(report.arms[2].consistency.verdict == Verdict::consistent);
 }
 

@@ -82,7 +82,7 @@ TEST_CASE("causes: a filter that diverges, and not a factor however large") {
     CHECK_THAT(first_cause(planted), Contains("the filter diverges, NEES/dim is ") && Contains("is a Jacobian wrong") &&
                                          Contains("jacobian_mismatch"));
     planted.variance = right;
-    for (int k = 0; k < planted.steps; ++k) planted.variance.row(k) *= 1 + 0.2 * k;  // far from lost
+    for (int k = 0; k < planted.steps; ++k) planted.variance.row(k) *= 1 + 0.2 * k;  // far from diverged
     for (const std::string& cause : planted.causes()) CHECK_THAT(cause, !Contains("diverges"));
 }
 
@@ -118,7 +118,7 @@ TEST_CASE("causes: P of the step before or after, a start alone, and few trials 
     planted.said = planted.variance;
     const auto spoil = [](DrawnRecord& record) {
         for (int i = 0; i < 20; ++i)
-            for (int k = 0; k < record.steps; ++k) record.error[record.at(i, k)] *= 4;  // NEES/dim 16: not lost
+            for (int k = 0; k < record.steps; ++k) record.error[record.at(i, k)] *= 4;  // NEES/dim 16: not diverged
     };
     CHECK_THAT(first_cause(planted, spoil), Contains("half of the trials have NEES/dim below"));
 }

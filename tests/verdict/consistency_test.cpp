@@ -190,16 +190,16 @@ TEST_CASE("consistency: of failed trials exactly the share is not more, whatever
     CHECK_FALSE(too_many_failed(0, 0, 0));
 }
 
-TEST_CASE("consistency: trials that failed and trials that are lost count alike as failed") {
+TEST_CASE("consistency: trials that failed and trials that diverged count alike as failed") {
     Evidence evidence;
     evidence.all_trials = 200;
-    for (const auto& [left_out, lost, verdict] :
+    for (const auto& [left_out, diverged, verdict] :
          {std::tuple(2, 0, Verdict::undecided), std::tuple(0, 2, Verdict::undecided), std::tuple(3, 0, Verdict::failed),
           std::tuple(0, 3, Verdict::failed), std::tuple(2, 1, Verdict::failed)}) {
-        CAPTURE(left_out, lost);
+        CAPTURE(left_out, diverged);
         evidence.left_out = left_out;
-        evidence.lost = lost;
-        evidence.trials = 200 - left_out - lost;
+        evidence.diverged = diverged;
+        evidence.trials = 200 - left_out - diverged;
         CHECK(judge(evidence, 0.05).verdict == verdict);
         CHECK(judge(evidence, {0.05, 0.02}).verdict == Verdict::undecided);
     }

@@ -120,11 +120,11 @@ Evidence evidence_with(const FailingTrial& failure, std::size_t count) {
 }
 
 /// A study whose first arm has so many trials that ended like that.
-Study with_statuses(std::size_t failed, std::size_t lost) {
+Study with_statuses(std::size_t failed, std::size_t diverged) {
     Study study = small_study(1, 100, 1);
     std::vector<double>& status = study.scenarios.front().arms.front().columns.in_memory()[column_status];
-    for (std::size_t i = 0; i < failed + lost; ++i)
-        status[i] = static_cast<double>(i < failed ? Status::covariance_not_positive_definite : Status::lost);
+    for (std::size_t i = 0; i < failed + diverged; ++i)
+        status[i] = static_cast<double>(i < failed ? Status::covariance_not_positive_definite : Status::diverged);
     recount(study.scenarios.front());
     return study;
 }
@@ -162,7 +162,7 @@ TEST_CASE("failed: the verdict takes precedence over the other trials and over e
         const Record record = read_record(folder / "record.h5");
         const Evidence evidence = evidence_of(record.results, record.results.arms.front());
         CHECK(evidence.left_out == 100);
-        CHECK((evidence.lost > 500) == (scale > 1));
+        CHECK((evidence.diverged > 500) == (scale > 1));
         const Consistency with = judge(evidence, limits()), without = judge(evidence, limits(1));
         CHECK(with.verdict == Verdict::failed);
         CHECK(without.verdict == (scale < 1   ? Verdict::pessimistic
@@ -192,11 +192,11 @@ TEST_CASE("failed: a trial that ends early has not failed where the dataset `ste
     CHECK(read_record(folder / "record.h5").trouble_count == 900);
 }
 
-TEST_CASE("failed: lost trials count, and every failed trial is in the first line of the arm") {
+TEST_CASE("failed: diverged trials count, and every failed trial is in the first line of the arm") {
     const Report report = report_either_way(with_statuses(1, 2), 0.05);
     const ArmReport& arm = report.arms.front();
     CHECK(arm.failed == 1);
-    CHECK(arm.lost == 2);
+    CHECK(arm.diverged == 2);
     CHECK(arm.consistency.verdict == Verdict::failed);  // 3 of 100 are more than 1 %
     CHECK(report_either_way(with_statuses(1, 0), 0.05).arms.front().consistency.verdict != Verdict::failed);
     CHECK(report_either_way(with_statuses(1, 2), {0.05, 0.03}).arms.front().consistency.verdict != Verdict::failed);
@@ -204,25 +204,25 @@ TEST_CASE("failed: lost trials count, and every failed trial is in the first lin
     const std::string text = report_text(report), row = text.substr(text.find("  heading-straight/fixed.ekf"));
     CHECK_THAT(
         text,
-        Contains("WARNING: 3 of 100 trials of heading-straight/fixed.ekf failed or are lost; 1 of them are left out of "
-                 "its numbers.\nnote: 2 trials of heading-straight/fixed.ekf are lost (NEES/dim over the run beyond 25): "
-                 "left out of the verdict, kept\n  in the columns"));
+        Contains(
+            "WARNING: 3 of 100 trials of heading-straight/fixed.ekf failed or diverged; 1 of them are left out of "
+            "its numbers.\nnote: 2 trials of heading-straight/fixed.ekf diverged (NEES/dim over the run beyond 25): "
+            "left out of the verdict, kept\n  in the columns"));
     CHECK_THAT(row.substr(0, row.find('\n')), Contains(" failed ") && Catch::EndsWith(" 3 (at most 7.6 %)"));
-    CHECK_THAT(row, Contains("\n      3 of 100 trials failed or are lost, more than 1 %: 2 with status lost\n"));
+    CHECK_THAT(row, Contains("\n      3 of 100 trials failed or diverged, more than 1 %: 2 with status diverged\n"));
     const Json json = Json::parse(report_json(report));
     CHECK(json[0]["verdict"] == "failed");
     CHECK(json[0]["failed"] == 1);
     CHECK(json[0]["failed_trials"] == 3);
-    CHECK(json[0]["reason"] == "3 of 100 trials failed or are lost, more than 1 %: 2 with status lost");
+    CHECK(json[0]["reason"] == "3 of 100 trials failed or diverged, more than 1 %: 2 with status diverged");
     CHECK_THAT(report_csv(report), Contains("heading-straight,fixed.ekf,100,1,trace_P,") && Contains(",failed,3\n"));
     const std::string page = report_html(report, {"r.h5", {}, "test"});
-    CHECK_THAT(page, Contains("<span class=\"badge failed\">") &&
-                         Contains("3 of 100 trials failed or are lost") &&
+    CHECK_THAT(page, Contains("<span class=\"badge failed\">") && Contains("3 of 100 trials failed or diverged") &&
                          Contains(">at most 7.6 %</data> of all"));
     CHECK_THROWS_WITH(require(report, Requirement::consistent), Contains("heading-straight/fixed.ekf failed, "));
 }
 
-TEST_CASE("failed: where most trials are lost they are judged, and counted all the same") {
+TEST_CASE("failed: where most trials diverged they are judged, and counted all the same") {
     const Report of_study = report_either_way(with_statuses(1, 60), 0.05);
     const TemporaryFolder folder;
     Values values;
@@ -233,23 +233,22 @@ TEST_CASE("failed: where most trials are lost they are judged, and counted all t
     const Report of_record = make_record_report(read_record(folder / "record.h5"), "record.h5", 0.05);
     for (const Report* report : {&of_study, &of_record}) {
         const ArmReport& arm = report->arms.front();
-        const std::int64_t lost = report == &of_study ? 60 : 600;
+        const std::int64_t diverged = report == &of_study ? 60 : 600;
         CHECK(arm.failed == 1);
-        CHECK(arm.lost == lost);
+        CHECK(arm.diverged == diverged);
         CHECK(arm.evidence.trials == arm.trials - 1);
-        const std::string count = std::to_string(lost + 1),
-                          of = count + " of " + std::to_string(arm.trials) + " trials",
-                          text = report_text(*report), name = arm.scenario + "/" + arm.arm,
-                          page = report_html(*report, {"r.h5", {}, "test"});
+        const std::string count = std::to_string(diverged + 1),
+                          of = count + " of " + std::to_string(arm.trials) + " trials", text = report_text(*report),
+                          name = arm.scenario + "/" + arm.arm, page = report_html(*report, {"r.h5", {}, "test"});
         CHECK_THAT(text, Contains("WARNING: " + of) && Contains("judged all the") &&
-                             Contains("note: " + std::to_string(lost) + " trials of " + name) &&
+                             Contains("note: " + std::to_string(diverged) + " trials of " + name) &&
                              !Contains("left out of the verdict"));
         const std::string row = text.substr(text.find("  " + name));
         CHECK_THAT(row.substr(0, row.find('\n')), Contains(" " + count + " (at most"));
         const Json json = Json::parse(report_json(*report))[0];
-        CHECK(json["lost"] == lost);
-        CHECK(json["failed_trials"] == lost + 1);
-        CHECK(json["failed_most"]["status"] == "lost");
+        CHECK(json["diverged"] == diverged);
+        CHECK(json["failed_trials"] == diverged + 1);
+        CHECK(json["failed_most"]["status"] == "diverged");
         CHECK_THAT(report_csv(*report), Contains("," + count + "\n"));
         CHECK_THAT(page, Contains("WARNING: " + of) && Contains(">" + count + "</data> of "));
     }

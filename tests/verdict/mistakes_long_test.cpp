@@ -88,7 +88,7 @@ TEST_CASE("mistakes: a trial whose P is not positive definite has no NEES, and n
             for (std::size_t k = 0; k < 5; ++k) CHECK(std::isnan(arm.nees[i * 5 + k]));
         }
     const Evidence evidence = evidence_of(results, arm);
-    const int used = static_cast<int>(trials) - bad - ended(arm, Status::non_finite) - ended(arm, Status::lost);
+    const int used = static_cast<int>(trials) - bad - ended(arm, Status::non_finite) - ended(arm, Status::diverged);
     CHECK(evidence.trials == used);
     for (std::size_t k = 0; k < 5; ++k) {
         CHECK(evidence.groups.front().anees.degrees[k] == 9.0 * used);
@@ -96,22 +96,22 @@ TEST_CASE("mistakes: a trial whose P is not positive definite has no NEES, and n
         CHECK(evidence.credibility.step[k].count == used);
     }
     // Both add up the same NEES, rounded otherwise.
-    const double mean = mean_ratio(arm, [](Status status) { return !failed(status) && status != Status::lost; });
+    const double mean = mean_ratio(arm, [](Status status) { return !failed(status) && status != Status::diverged; });
     CHECK(evidence.groups.front().run.mean == Approx(mean).epsilon(1e-12));
 }
 
-TEST_CASE("mistakes: where the others are all lost they are judged, and counted beside those that failed") {
+TEST_CASE("mistakes: where the others diverged they are judged, and counted beside those that failed") {
     const ScenarioResults results = replication(without_odometry(5e4, 1e-3), trials, 9);
     const ArmResults& arm = results.arms.front();
-    const int bad = ended(arm, Status::covariance_not_positive_definite), lost = ended(arm, Status::lost);
+    const int bad = ended(arm, Status::covariance_not_positive_definite), diverged = ended(arm, Status::diverged);
     REQUIRE(bad > 0);
-    REQUIRE(lost == trials - bad);
+    REQUIRE(diverged == trials - bad);
     const ArmReport report = report_arm(results, arm, evidence_of(results, arm), 9, 0.05);
-    CHECK(report.evidence.trials == lost);
+    CHECK(report.evidence.trials == diverged);
     CHECK(report.failed == bad);
-    CHECK(report.lost == lost);
-    CHECK(report.cause->status == Status::lost);
-    CHECK(report.cause->trials == lost);
+    CHECK(report.diverged == diverged);
+    CHECK(report.cause->status == Status::diverged);
+    CHECK(report.cause->trials == diverged);
 }
 
 TEST_CASE("mistakes: quantiles in a report are the sample's, not those of a normal of its mean and deviation") {
@@ -131,19 +131,19 @@ TEST_CASE("mistakes: quantiles in a report are the sample's, not those of a norm
     CHECK(figure.summary.mean - 1.645 * figure.summary.standard_deviation < 0);
 }
 
-TEST_CASE("mistakes: lost trials are in none of the evidence, and are counted") {
+TEST_CASE("mistakes: diverged trials are in none of the evidence, and are counted") {
     DeformableSettings s;
     s.filter.measurement = s.filter.odometry = 0.2;  // NEES/n is about 17
     s.arms.controllers = {Controller::fixed};
     const ScenarioResults results = replication(s, trials, 61);
     const ArmResults& arm = results.arms.front();
-    const int lost = ended(arm, Status::lost), completed = ended(arm, Status::completed);
-    REQUIRE(lost > 3);
-    REQUIRE(completed > lost);
+    const int diverged = ended(arm, Status::diverged), completed = ended(arm, Status::completed);
+    REQUIRE(diverged > 3);
+    REQUIRE(completed > diverged);
     const Evidence evidence = evidence_of(results, arm);
     CHECK(evidence.trials == completed);
-    CHECK(evidence.lost == lost);
-    CHECK(evidence.lost_trials.size() == static_cast<std::size_t>(std::min(lost, 10)));
+    CHECK(evidence.diverged == diverged);
+    CHECK(evidence.diverged_trials.size() == static_cast<std::size_t>(std::min(diverged, 10)));
     for (std::size_t k = 0; k < 19; ++k) {
         CHECK(evidence.groups.front().step[k].count == completed);
         CHECK(counted_cells(arm, k) == completed);

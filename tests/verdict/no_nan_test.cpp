@@ -125,7 +125,7 @@ TEST_CASE("report: no sentence says nan or inf, of studies that fail in every wa
     SECTION("two trials") { check_renderings(run(small_scenarios(), 2)); }
     SECTION("no trial") { check_renderings(new_study(small_scenarios(), 1)); }
     SECTION("all failed") { check_renderings(all_ended(Status::non_finite)); }
-    SECTION("all lost") { check_renderings(all_ended(Status::lost)); }
+    SECTION("all diverged") { check_renderings(all_ended(Status::diverged)); }
     SECTION("nothing is a number") { check_renderings(without_numbers(std::nan("")), false); }
     SECTION("everything is infinite") { check_renderings(without_numbers(not_finite), false); }
     SECTION("aggregates, one trial") { check_renderings(run(small_scenarios(), 1, Keep::aggregates)); }

@@ -75,7 +75,7 @@ Scenario tracker(const Overrides& more = {}) {
 }
 
 Study run_spoiled(std::int64_t trials) {
-    return run(read_scenario_text("[scenario]\nworld = spoiled\nposes = 10\n", "test", "mine"), trials);
+    return run(read_scenario_text("[scenario]\nworld = spoiled\nposes = 12\n", "test", "mine"), trials);
 }
 
 double statuses(const ArmResults& arm, std::size_t column, Status status) {
@@ -158,18 +158,18 @@ TEST_CASE("own world: trouble in a trial is its status, and changes no other") {
     all_are(0, Status::completed, -1);
     all_are(1, Status::covariance_not_positive_definite, 3);
     all_are(2, Status::non_finite, 3);
-    all_are(3, Status::lost, -1);
+    all_are(3, Status::diverged, -1);
     all_are(4, Status::completed, -1);
     CHECK(results.arms[1].totals.trials.counted() == 0);
     CHECK(results.arms[3].totals.trials.counted() == 0);
-    CHECK(results.arms[3].totals.trials.lost() == 20);
+    CHECK(results.arms[3].totals.trials.diverged() == 20);
     CHECK(std::isnan(results.arms[1].columns.in_memory()[0][0]));
-    // One row was not observed at one of nine steps; rows stand for themselves from step to step.
+    // One row was not observed at one of eleven steps; rows stand for themselves from step to step.
     const Evidence sound = evidence_of(results, results.arms[0]), missing = evidence_of(results, results.arms[4]);
-    CHECK(sound.nis[0].degrees == 20 * 27);
-    CHECK(missing.nis[0].degrees == 20 * 26);
-    CHECK(sound.whiteness[0].count == 20 * 8 * 3);
-    CHECK(missing.whiteness[0].count == 20 * (8 * 3 - 2));
+    CHECK(sound.nis[0].degrees == 20 * 33);
+    CHECK(missing.nis[0].degrees == 20 * 32);
+    CHECK(sound.whiteness[0].count == 20 * 10 * 3);
+    CHECK(missing.whiteness[0].count == 20 * (10 * 3 - 2));
 }
 
 TEST_CASE("own world: series are those of the formulas") {
@@ -177,7 +177,7 @@ TEST_CASE("own world: series are those of the formulas") {
     const ScenarioResults results = run_spoiled(1).scenarios[0];
     const KeyedDraws<double> draws(1, 0, std::numeric_limits<double>::infinity());
     double nees = 0, nis = 0;
-    for (int k = 1; k < 10; ++k) {
+    for (int k = 1; k < 12; ++k) {
         const auto e = draws.normal(static_cast<Source>(0), k, 0), a = draws.normal(static_cast<Source>(1), k, 0);
         const double c = draws.normal(static_cast<Source>(1), k, 1).x;
         nees += e.x * e.x + e.y * e.y;
@@ -190,9 +190,9 @@ TEST_CASE("own world: series are those of the formulas") {
     };
     CHECK(column("trace_P") == 2);
     CHECK(column("squared_error") == Approx(nees).epsilon(1e-14));
-    CHECK(column("nees_ratio") == Approx(nees / 9 / 2).epsilon(1e-14));
-    CHECK(column("nis_ratio") == Approx(nis / 27).epsilon(1e-14));
-    CHECK(column("log_score") == Approx(std::log(2 * std::acos(-1)) + nees / 9 / 2).epsilon(1e-14));
+    CHECK(column("nees_ratio") == Approx(nees / 11 / 2).epsilon(1e-14));
+    CHECK(column("nis_ratio") == Approx(nis / 33).epsilon(1e-14));
+    CHECK(column("log_score") == Approx(std::log(2 * std::acos(-1)) + nees / 11 / 2).epsilon(1e-14));
 }
 
 TEST_CASE("own world: what a world does wrong is said, not counted") {

@@ -18,13 +18,13 @@ struct TrialTotals {
     std::vector<ExactMoments> columns;       ///< [column_count] of the columns that are reported
     /// [earlier arms, column_count] of this arm minus that one, over the trials that failed in neither
     std::vector<std::vector<DifferenceTotals>> differences;
-    bool lost_count = false;                 ///< lost trials are in the series as the others: of a record
+    bool diverged_count = false;  ///< diverged trials are in the series as the others: of a record
 
     void add(const TrialTotals& other);
     void subtract(const TrialTotals& other);
     std::int64_t trials() const;             ///< number of trials, including failed ones
-    std::int64_t counted() const;            ///< those of the series: that did not fail and, as a rule, were not lost
-    std::int64_t lost() const;               ///< whose columns are known, and whose series are left out as a rule
+    std::int64_t counted() const;            ///< those of the series: that did not fail and, as a rule, did not diverge
+    std::int64_t diverged() const;           ///< whose columns are known, and whose series are left out as a rule
 };
 
 /// Whether a column is a quantity of the trial, not its status.

@@ -23,7 +23,7 @@ ComparedSide side_of(const ComparedArm& compared, const StudyFile& file, const s
     ComparedSide side{file.path, "study " + study_hash(file.study), compared.results.trials, 0, 0, {}};
     for (std::size_t status = 0; status < statuses.size(); ++status)
         if (failed(static_cast<Status>(status))) side.failed += statuses[status];
-    side.lost = statuses[static_cast<std::size_t>(Status::lost)];
+    side.diverged = statuses[static_cast<std::size_t>(Status::diverged)];
     return side;
 }
 

@@ -55,8 +55,8 @@ bool differs(const ComparedColumn& column);
 struct ComparedSide {
     std::string file, source;               ///< its path, and `study UUID`
     std::int64_t trials = 0;                ///< of its file
-    std::int64_t failed = 0, lost = 0;  ///< of the trials that are compared
-    std::int64_t failed_trials() const { return failed + lost; }
+    std::int64_t failed = 0, diverged = 0;  ///< of the trials that are compared
+    std::int64_t failed_trials() const { return failed + diverged; }
     /// By column, over the pairs: mean of A - mean of B = mean of A - B. NaN where no trial is kept and some trial is
     /// in no pair.
     std::vector<double> mean;

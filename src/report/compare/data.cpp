@@ -13,12 +13,8 @@ namespace credence {
 namespace {
 
 Json side_json(const ComparedSide& side) {
-    return {{"file", side.file},
-            {"source", side.source},
-            {"trials", side.trials},
-            {"failed", side.failed},
-            {"lost", side.lost},
-            {"failed_trials", side.failed_trials()}};
+    return {{"file", side.file},     {"source", side.source},     {"trials", side.trials},
+            {"failed", side.failed}, {"diverged", side.diverged}, {"failed_trials", side.failed_trials()}};
 }
 
 /// What is said of a column; CSV has the same.

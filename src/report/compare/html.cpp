@@ -65,13 +65,13 @@ Html pair_section(const ComparedPair& pair, std::size_t number) {
 }
 
 Html origin_part(const CompareReport& report, const std::string& made_by) {
-    Table table("Where the numbers came from", {"side", "file", "study", "trials", "failed", "lost"});
+    Table table("Where the numbers came from", {"side", "file", "study", "trials", "failed", "diverged"});
     for (const ComparedPair& pair : report.pairs) {
         table.group(pair.comparison.scenario);
         for (const auto& [name, side] : {std::pair(pair.comparison.a, &pair.a), std::pair(pair.comparison.b, &pair.b)})
             table.row(name,
                       {file_name(side->file), side->source, count_cell(static_cast<double>(side->trials)),
-                       count_cell(static_cast<double>(side->failed)), count_cell(static_cast<double>(side->lost))});
+                       count_cell(static_cast<double>(side->failed)), count_cell(static_cast<double>(side->diverged))});
     }
     return "<section aria-labelledby=\"provenance\">\n<h2 id=\"provenance\">Provenance</h2>\n"_html + html_of(table) +
            element("p", escaped("Root seed " + std::to_string(report.root_seed) + ". Page made by " + made_by + ".")) +

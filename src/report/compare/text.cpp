@@ -170,7 +170,7 @@ std::string compare_notes(const CompareReport& report) {
     const auto note = [&](const ComparedPair& pair, const ComparedSide& side, const std::string& arm) {
         const FailureWords words{"are left out, with their partners", "compared, too"};
         for (const std::string& line :
-             failure_lines(pair.comparison.scenario + "/" + arm, {pair.trials, side.failed, side.lost},
+             failure_lines(pair.comparison.scenario + "/" + arm, {pair.trials, side.failed, side.diverged},
                            report.failed_limit, words))
             text += line + "\n";
     };

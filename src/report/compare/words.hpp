@@ -10,7 +10,7 @@ namespace credence {
 /// What is compared, and the meaning of the intervals.
 std::string compare_head(const CompareReport& report);
 
-/// Failed and lost trials, studies that are not complete, scenarios that are left out; a line each.
+/// Failed and diverged trials, studies that are not complete, scenarios that are left out; a line each.
 std::string compare_notes(const CompareReport& report);
 
 /// One sentence on the first column, and the others that differ.

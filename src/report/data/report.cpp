@@ -109,8 +109,12 @@ Json directions_json(const DirectionsFound& directions) {
 }
 
 Json arm_json(const Report& report, const ArmReport& arm) {
-    Json head{{"scenario", arm.scenario}, {"arm", arm.arm}, {"trials", arm.trials}, {"failed", arm.failed},
-              {"lost", arm.lost}, {"failed_trials", arm.failed_trials()},
+    Json head{{"scenario", arm.scenario},
+              {"arm", arm.arm},
+              {"trials", arm.trials},
+              {"failed", arm.failed},
+              {"diverged", arm.diverged},
+              {"failed_trials", arm.failed_trials()},
               {"may_be_unseen", arm.evidence.may_be_unseen()}};
     if (arm.gaps.missing > 0) head["missing_steps"] = gaps_json(arm.gaps);
     if (arm.cause) head["failed_most"] = cause_json(*arm.cause);

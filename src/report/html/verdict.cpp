@@ -40,13 +40,13 @@ Html numbers_of(const ArmReport& arm) {
     const Summary& nees = column_named(arm.columns, "nees_ratio").summary;
     const Summary& nis = column_named(arm.columns, "nis_ratio").summary;
     const double exact = arm.evidence.groups.empty() ? nan : t_test(arm.evidence.groups.front().run, 1);
-    return html_of(
-        "NEES/n " + mean_cell(nees.mean, nees.ci95) +
-        (nis.count > 0 ? ", NIS/m " + mean_cell(nis.mean, nis.ci95) : Cell()) + "; " + failed_cell(arm) + " of " +
-        count_cell(static_cast<double>(arm.trials)) + " trials failed or are lost" +
-        (unseen_text(arm).empty() ? Cell()
-                                  : ": " + number_cell_as(arm.evidence.may_be_unseen(), unseen_text(arm)) + " of all") +
-        (std::isnan(exact) ? Cell() : "; p " + p_cell(exact) + " of NEES/n being exactly 1"));
+    return html_of("NEES/n " + mean_cell(nees.mean, nees.ci95) +
+                   (nis.count > 0 ? ", NIS/m " + mean_cell(nis.mean, nis.ci95) : Cell()) + "; " + failed_cell(arm) +
+                   " of " + count_cell(static_cast<double>(arm.trials)) + " trials failed or diverged" +
+                   (unseen_text(arm).empty()
+                        ? Cell()
+                        : ": " + number_cell_as(arm.evidence.may_be_unseen(), unseen_text(arm)) + " of all") +
+                   (std::isnan(exact) ? Cell() : "; p " + p_cell(exact) + " of NEES/n being exactly 1"));
 }
 
 Html verdict_line(const ArmReport& arm) {

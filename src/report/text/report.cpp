@@ -34,7 +34,7 @@ std::vector<const ArmReport*> arms_by_themselves(const Report& report) {
 }
 
 std::string verdicts_part(const std::vector<const ArmReport*>& arms) {
-    Table table("", {"", "verdict", "NEES/n", "NIS/m", "failed or lost"});
+    Table table("", {"", "verdict", "NEES/n", "NIS/m", "failed or diverged"});
     for (const ArmReport* arm : arms) {
         std::vector<Cell> cells{arm->scenario + "/" + arm->arm, verdict_cell(*arm)};
         for (const char* column : {"nees_ratio", "nis_ratio"}) {

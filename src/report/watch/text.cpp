@@ -78,7 +78,7 @@ void add_scenario(Table& table, const WatchedScenario& scenario) {
     for (const WatchedArm& arm : scenario.arms) {
         std::vector<Cell> cells;
         for (const Moments& column : arm.columns) cells.push_back(mean_cell_of(column));
-        cells.push_back(count_cell(static_cast<double>(arm.failed + arm.lost)));
+        cells.push_back(count_cell(static_cast<double>(arm.failed + arm.diverged)));
         table.row("  " + arm.name, std::move(cells));
     }
     for (const WatchedArm& arm : scenario.arms)
@@ -105,11 +105,16 @@ const char* state_name(RunState state) {
 }
 
 Json arm_json(const Snapshot& snapshot, const WatchedScenario& scenario, const WatchedArm& arm) {
-    Json json{{"scenario", scenario.name},       {"arm", arm.name},
-              {"state", state_name(snapshot.state)}, {"trials", scenario.trials},
-              {"trials_asked", scenario.trials_asked}, {"blocks", scenario.blocks},
-              {"blocks_asked", scenario.blocks_asked}, {"failed", arm.failed},
-              {"lost", arm.lost},        {"failed_trials", arm.failed + arm.lost}};
+    Json json{{"scenario", scenario.name},
+              {"arm", arm.name},
+              {"state", state_name(snapshot.state)},
+              {"trials", scenario.trials},
+              {"trials_asked", scenario.trials_asked},
+              {"blocks", scenario.blocks},
+              {"blocks_asked", scenario.blocks_asked},
+              {"failed", arm.failed},
+              {"diverged", arm.diverged},
+              {"failed_trials", arm.failed + arm.diverged}};
     for (std::size_t f = 0; f < arm.columns.size(); ++f) {
         json[scenario.columns[f].name] = moments_json(arm.columns[f]);
         json[scenario.columns[f].name]["unit"] = scenario.columns[f].unit;

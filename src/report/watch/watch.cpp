@@ -51,8 +51,12 @@ Shard shard_of(const BlockRanges& blocks, std::int64_t trials) {
 WatchedArm watched_arm(const ScenarioResults& results, const ArmResults& arm,
                        const std::vector<std::size_t>& columns) {
     const TrialTotals& totals = arm.totals.trials;
-    WatchedArm watched{arm.name, totals.trials() - totals.counted() - totals.lost(),
-                       totals.statuses[static_cast<std::size_t>(Status::lost)], {}, {}, {}};
+    WatchedArm watched{arm.name,
+                       totals.trials() - totals.counted() - totals.diverged(),
+                       totals.statuses[static_cast<std::size_t>(Status::diverged)],
+                       {},
+                       {},
+                       {}};
     for (const std::size_t column : columns) watched.columns.push_back(column_moments(arm, column));
     if (const ArmResults* other = baseline_of(results, arm)) {
         watched.other = other->name;

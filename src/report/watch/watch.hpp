@@ -20,7 +20,7 @@ std::vector<std::size_t> watched_columns(const std::vector<Column>& columns);
 /// One arm, over its trials so far; failed ones are left out of the means.
 struct WatchedArm {
     std::string name;
-    std::int64_t failed = 0, lost = 0;  ///< trials
+    std::int64_t failed = 0, diverged = 0;  ///< trials
     std::vector<Moments> columns;           ///< of the watched columns
     std::string other;                      ///< the arm's baseline, such as `fixed.X` beside `greedy.X`; empty: none
     Moments difference;                     ///< of trace_P of this arm - that of `other`, by trial, where there is one

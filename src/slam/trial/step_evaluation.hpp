@@ -20,10 +20,10 @@ struct Outcome {
         pose = select(first, Real(k), pose);
     }
     /// After the last step, of so many numbers: steps times components.
-    void note_lost(Real nees_ratio, int numbers) {
-        if (numbers < least_lost_numbers) return;
-        const Mask<Real> lost = both(nees_ratio > Real(lost_nees_ratio), status == Real(0));
-        status = select(lost, Real(static_cast<int>(Status::lost)), status);
+    void note_diverged(Real nees_ratio, int numbers) {
+        if (numbers < least_diverged_numbers) return;
+        const Mask<Real> diverged = both(nees_ratio > Real(diverged_nees_ratio), status == Real(0));
+        status = select(diverged, Real(static_cast<int>(Status::diverged)), status);
     }
 };
 
@@ -232,7 +232,7 @@ void write_columns(const CommonView& problem, const Sums<Real>& sums, Outcome<Re
     columns[column_unseen] = sums.unseen;
     columns[column_pose_error] = sums.pose_error;
     columns[column_nees_ratio] = sums.nees / Real(steps * n);
-    outcome.note_lost(columns[column_nees_ratio], steps * n);
+    outcome.note_diverged(columns[column_nees_ratio], steps * n);
     columns[column_nis_ratio] = sums.nis / sums.rows;
     columns[column_mean_trace_P] = sums.traces / Real(steps);
     columns[column_log_score] =

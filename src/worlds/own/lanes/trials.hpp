@@ -71,7 +71,7 @@ public:
     /// After the last step: writes the columns [column_count], in the order of own_columns().
     void write_columns(Real* to) {
         note_columns();
-        outcome_.note_lost(nees_ratio(), (poses - 1) * state_size);
+        outcome_.note_diverged(nees_ratio(), (poses - 1) * state_size);
         const int steps_of_trial = poses - 1;
         const auto write = [&](Real value) { *to++ = value; };
         write(all_series_[(view_.variance + 1) * steps_of_trial - 1]);

@@ -1,4 +1,4 @@
-// Tenths of a run: what cancels over all steps, such as a bias that changes its sign.
+// Time windows of a run: what cancels over all steps, such as a bias that changes its sign.
 
 #include "statistics/mean_bounds.hpp"
 #include "verdict/consistency_parts.hpp"
@@ -11,11 +11,11 @@ namespace credence {
 
 namespace {
 
-constexpr int tenths = 10, least_steps = 5;  ///< of a tenth
+constexpr int windows = 10, least_steps = 5;  ///< of a window
 
-/// The mean over a tenth's steps, and a standard error that holds whatever the correlation of the steps is: the mean of
-/// theirs.
-Moments over_tenth(const std::vector<Moments>& steps, std::size_t first, std::size_t last) {
+/// The mean over a window's steps, and a standard error that holds whatever the correlation of the steps is: the mean
+/// of theirs.
+Moments over_window(const std::vector<Moments>& steps, std::size_t first, std::size_t last) {
     Moments mean{0, 0, 0, 0};
     double known = 0;
     for (std::size_t k = first; k < last; ++k) {
@@ -30,38 +30,39 @@ Moments over_tenth(const std::vector<Moments>& steps, std::size_t first, std::si
     return mean;
 }
 
-/// Calls visit(tenth, the numbers of its steps).
+/// Calls visit(window, the numbers of its steps).
 template <class Visit>
-void each_tenth(const std::vector<Moments>& steps, const Visit& visit) {
-    for (std::size_t tenth = 0; tenth < tenths; ++tenth) {
-        const std::size_t first = tenth * steps.size() / tenths, last = (tenth + 1) * steps.size() / tenths;
+void each_window(const std::vector<Moments>& steps, const Visit& visit) {
+    for (std::size_t window = 0; window < windows; ++window) {
+        const std::size_t first = window * steps.size() / windows, last = (window + 1) * steps.size() / windows;
         std::vector<int> numbers;
         for (std::size_t k = first; k < last; ++k) numbers.push_back(static_cast<int>(k) + 1);
-        visit(over_tenth(steps, first, last), numbers);
+        visit(over_window(steps, first, last), numbers);
     }
 }
 
 /// The names of what is beyond its wider margin somewhere, as one reason.
 void withhold(const std::string& what, const std::vector<std::string>& names, Judgement& judgement) {
     if (!names.empty())
-        judgement.not_shown(what + first_of(names) + ": over a tenth of the steps beyond three times the margin", true);
+        judgement.not_shown(what + first_of(names) + ": over a window of the steps beyond three times the margin",
+                            true);
 }
 
 }  // namespace
 
-void judge_tenths(const Evidence& evidence, Judgement& judgement) {
-    if (evidence.steps < tenths * least_steps || evidence.of_few_runs()) return;
+void judge_windows(const Evidence& evidence, Judgement& judgement) {
+    if (evidence.steps < windows * least_steps || evidence.of_few_runs()) return;
     std::vector<std::string> groups, components;
     for (const GroupEvidence& group : evidence.groups) {
         if (!(group.run.count > 1) || is_rounded(group, judgement.limits())) continue;
         bool beyond = false;
-        each_tenth(group.step, [&](const Moments& mean, const std::vector<int>&) {
+        each_window(group.step, [&](const Moments& mean, const std::vector<int>&) {
             beyond = beyond || std::abs(mean.mean - 1) > margins_of_part * judgement.limits().margin;
         });
         if (beyond) groups.push_back(group.name);
     }
     withhold("NEES/dim of ", groups, judgement);
-    const double level = levels::bias / (tenths * static_cast<double>(std::max<std::size_t>(1, evidence.bias.size()))),
+    const double level = levels::bias / (windows * static_cast<double>(std::max<std::size_t>(1, evidence.bias.size()))),
                  margin = margins_of_part * judgement.limits().bias;
     for (const BiasEvidence& bias : evidence.bias) {
         if (!(bias.run.count > 1)) continue;
@@ -69,7 +70,7 @@ void judge_tenths(const Evidence& evidence, Judgement& judgement) {
         bool beyond = false;
         Moments worst;
         Interval interval;
-        each_tenth(bias.step, [&](const Moments& mean, const std::vector<int>& steps) {
+        each_window(bias.step, [&](const Moments& mean, const std::vector<int>& steps) {
             if (!(std::abs(mean.mean) > margin)) return;
             const double half = t_quantile(level, mean.count - 1) * mean.standard_error;
             beyond = true;
@@ -80,7 +81,7 @@ void judge_tenths(const Evidence& evidence, Judgement& judgement) {
             interval = {mean.mean - half, mean.mean + half};
         });
         if (!found.empty())
-            judgement.add_bias({Subject::tenth, Fault::biased, bias.component, steps_text(found), worst.mean, interval,
+            judgement.add_bias({Subject::window, Fault::biased, bias.component, steps_text(found), worst.mean, interval,
                                 "mean error/sigma"});
         else if (beyond)
             components.push_back(bias.component);

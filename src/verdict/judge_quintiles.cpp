@@ -15,7 +15,7 @@ namespace credence {
 
 namespace {
 
-constexpr std::size_t fifths = 5, least_trials = 20;  ///< of a fifth
+constexpr std::size_t quintiles = 5, least_trials = 20;  ///< of a quintile
 
 /// The whole state's NEES/n of a trial, and its log det P, means over the steps.
 struct CalibratedTrial {
@@ -49,33 +49,33 @@ std::vector<CalibratedTrial> trials_by_size(const ScenarioResults& results, cons
 
 }  // namespace
 
-std::vector<Moments> fifths_by_size(const ScenarioResults& results, const ArmResults& arm) {
+std::vector<Moments> quintiles_by_size(const ScenarioResults& results, const ArmResults& arm) {
     if (!results.has_joint_covariance) return {};
     const std::vector<CalibratedTrial> trials = trials_by_size(results, arm);
-    if (trials.size() < fifths * least_trials) return {};
-    // Between the middles of the outer fifths the variances of the state differ by 2 % at least.
+    if (trials.size() < quintiles * least_trials) return {};
+    // Between the middles of the outer quintiles the variances of the state differ by 2 % at least.
     const double smaller = trials[trials.size() / 10].log_det, larger = trials[trials.size() * 9 / 10].log_det;
     if (!(larger - smaller > std::log(1.02) * results.state_size())) return {};
     std::vector<Moments> all;
-    for (std::size_t fifth = 0; fifth < fifths; ++fifth) {
+    for (std::size_t quintile = 0; quintile < quintiles; ++quintile) {
         std::vector<double> ratios;
-        for (std::size_t i = fifth * trials.size() / fifths; i < (fifth + 1) * trials.size() / fifths; ++i)
+        for (std::size_t i = quintile * trials.size() / quintiles; i < (quintile + 1) * trials.size() / quintiles; ++i)
             ratios.push_back(trials[i].nees_ratio);
         all.push_back(moments_of(exact_moments(ratios)));
     }
     return all;
 }
 
-void judge_fifths(const Evidence& evidence, Judgement& judgement) {
-    if (evidence.fifths.empty() || evidence.of_few_runs()) return;
+void judge_quintiles(const Evidence& evidence, Judgement& judgement) {
+    if (evidence.quintiles.empty() || evidence.of_few_runs()) return;
     const GroupEvidence& state = evidence.groups.front();
     if (is_rounded(state, judgement.limits())) return;
-    static const char* const places[fifths] = {"smallest", "second smallest", "middle", "second largest", "largest"};
-    const double margin = margins_of_part * judgement.limits().margin, level = levels::calibration / fifths / 2;
+    static const char* const places[quintiles] = {"smallest", "second smallest", "middle", "second largest", "largest"};
+    const double margin = margins_of_part * judgement.limits().margin, level = levels::calibration / quintiles / 2;
     std::vector<std::string> beyond;
-    for (std::size_t fifth = 0; fifth < fifths; ++fifth) {
-        const PositiveSample sample = positive_sample(evidence.fifths[fifth]);
-        const std::string when = std::string("the fifth of the trials with the ") + places[fifth] + " P";
+    for (std::size_t quintile = 0; quintile < quintiles; ++quintile) {
+        const PositiveSample sample = positive_sample(evidence.quintiles[quintile]);
+        const std::string when = std::string("the quintile of the trials with the ") + places[quintile] + " P";
         const double degrees = degrees_over_steps(sample, state.dimension, evidence.steps);
         const MeanClaim claim = claim_on_nees(sample, degrees, level, margin);
         if (claim.above || claim.below)
