@@ -126,7 +126,9 @@ inline Record read_written(const std::function<void(const Handle& root)>& write)
 
 /// The report of what `write` writes, and of a drawn record.
 inline Report report_written(const std::function<void(const Handle& root)>& write, const Limits& limits = {}) {
-    return make_record_report(read_written(write), "record.h5", limits);
+    const TemporaryFolder folder;  // a report may read the record again
+    write_file(folder / "record.h5", write);
+    return make_record_report(read_record(folder / "record.h5"), "record.h5", limits);
 }
 inline Report report_of(const DrawnRecord& record) {
     return report_written([&](const Handle& root) { write_drawn(root, record); });

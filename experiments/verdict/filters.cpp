@@ -64,8 +64,8 @@ double scale_of(Tails tails, const Draws& draws, int step, int component) {
         case Tails::contaminated_steps: return contaminated_scale(draws, step, 0.05, 3);
         case Tails::contaminated_trials: return contaminated_scale(draws, 0, 0.05, 3);
         case Tails::outlying_steps: return contaminated_scale(draws, step, 0.01, 5);
-        case Tails::rarely_lost: return draws.uniform(0, 0) < 0.003 ? 8 : 1;
-        case Tails::lost: return draws.uniform(0, 0) < 0.01 ? 10 : 1;
+        case Tails::rarely_diverged: return draws.uniform(0, 0) < 0.003 ? 8 : 1;
+        case Tails::diverged: return draws.uniform(0, 0) < 0.01 ? 10 : 1;
     }
     return 1;
 }

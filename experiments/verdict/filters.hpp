@@ -38,8 +38,8 @@ enum class Tails {
     contaminated_steps,   ///< 5 % of steps are three times as large
     contaminated_trials,
     outlying_steps,       ///< 1 % of steps are five times as large
-    rarely_lost,          ///< 0.3 % of trials are eight times as large, and the others have covariance 1
-    lost,                 ///< 1 % are ten times as large, likewise
+    rarely_diverged,      ///< 0.3 % of trials are eight times as large, and the others have covariance 1
+    diverged,             ///< 1 % are ten times as large, likewise
 };
 
 /// One trial, a column for each step.

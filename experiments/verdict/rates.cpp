@@ -140,7 +140,7 @@ void print_false_verdicts(Laboratory& laboratory, Path path) {
         {Tails::contaminated_steps, "5 % of steps at 3 σ"},
         {Tails::contaminated_trials, "5 % of trials at 3 σ"},
         {Tails::outlying_steps, "1 % of steps at 5 σ"},
-        {Tails::rarely_lost, "0.3 % of trials at 8 σ, the others right"},
+        {Tails::rarely_diverged, "0.3 % of trials at 8 σ, the others right"},
         {Tails::diverged, "1 % of trials at 10 σ, the others right"}};
     std::printf("\nFalse verdicts on a right filter, per cent; %s\n\n", title(path).c_str());
     std::vector<std::string> columns{"errors"};

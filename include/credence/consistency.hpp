@@ -3,6 +3,8 @@
 
 #include <credence/evidence.hpp>
 
+#include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -119,6 +121,17 @@ struct Reached {
     double bias = 0;       ///< every mean error is within so many sigmas
 };
 
+/// What carries errors that are too large for P: their mean, their spread, or both.
+enum class Carrier { mean, mean_beside_too_large_P, both, spread, unknown };
+
+/// What an arm's errors are apart from their mean over the trials, step by step [docs/statistics.md, Attribution].
+struct Attribution {
+    Carrier carrier = Carrier::unknown;
+    double share = 0;    ///< of the squared error, in units of P, that the mean carries
+    double nees = 0;     ///< NEES/dimension of the whole state, apart from the mean
+    Interval interval;   ///< Student's, 95 %
+};
+
 struct Consistency {
     Verdict verdict = Verdict::undecided;
     Limits limits;
@@ -131,6 +144,9 @@ struct Consistency {
     std::vector<std::string> hints;    ///< what such findings often come from
     bool chart_doubted = false;        ///< a hint says that the errors may be in another chart than P
     std::vector<std::string> reasons;  ///< undecided only: what could not be shown, and why
+    std::optional<Attribution> attribution;  ///< of trials of a record, where something is too large
+    /// undecided only: NEES/dimension of the whole state, below and above 1, that nine of ten such studies would find
+    Interval smallest_faults{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
     TrialsNeeded trials_needed;        ///< undecided only, and not where more trials cannot help
     std::vector<Suspicion> suspicions; ///< undecided only
 };
@@ -141,6 +157,16 @@ Interval over_steps95(const GroupEvidence& group);
 /// The verdict on one arm [docs/statistics.md, Verdict]. The verdict on a single trial uses its NIS and the whiteness
 /// of its innovations alone. Where too many trials failed, findings are of the others, and the verdict is `failed`.
 Consistency judge(const Evidence& evidence, const Limits& limits);
+
+/// What carries errors that were found too large: `about_means` is the evidence of errors about their mean at each step,
+/// and `share` what that mean carries.
+Attribution attribute(const Evidence& evidence, const Consistency& verdict, const Evidence& about_means, double share);
+
+/// `mean`, `mean beside too large P`, `both`, `spread`, `unknown`
+const std::string& carrier_name(Carrier carrier);
+
+/// The attribution in words.
+std::string sentence(const Attribution& attribution);
 
 /// Replaces by NaN the NEES of the groups, and what rests on it, that rounding may have changed by more than a tenth of
 /// the margin: `judge` says nothing by them.

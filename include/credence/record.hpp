@@ -76,6 +76,12 @@ struct RunCurves {
     std::vector<ErrorCurve> errors;                          ///< of the first components where there are many
 };
 
+/// A record whose errors are about their mean over the trials, step by step [docs/statistics.md, Attribution].
+struct AboutMeans {
+    ScenarioResults results;
+    double share = 0;  ///< of the squared error, in units of P, that the means carry
+};
+
 /// A record that was read. `results` has one arm, `record`; its scenario only has a name (the file's stem), a title and
 /// poses = steps + 1. Step k of the results is step (k - 1) every of the file. Differences to the results of a run:
 /// - runs may differ in length: `present` counts the counted trials that have a step, and `run_sum` and
@@ -103,6 +109,9 @@ struct Record {
     /// Each reads the record again, with its errors in another chart: the other of `local` and `global`, then, of
     /// poses, `plain`, the differences of positions in the world's frame. Empty where charts do not differ.
     std::vector<std::function<Record()>> in_other_charts{};
+    /// Reads the record twice more. Empty where there are fewer than `least_segments` trials that count, or no P of the
+    /// whole state.
+    std::function<AboutMeans()> about_means{};
 };
 
 /// Reads a record, some trials at a time: memory grows with the file only by the columns of each trial, the errors of

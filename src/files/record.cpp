@@ -147,31 +147,32 @@ auto of_arm(const Handle& root, const std::string& file, const std::string& arm,
     return at_path(root, name + "/", [&](const Handle& record, const std::string&) { return use(record); });
 }
 
-Record read_in_chart(const std::string& path, const std::function<void(const Progress&)>& progress, int segments,
-                     int chart) {
+/// Calls `use` with the place of a record and its arm.
+void with_record(const std::string& path, const std::function<void(const FileSource&)>& use) {
     const auto named = parted(path);
-    return hdf5::read_file(named.first,
-                           "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
-                           "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
-                           "name component groups in the attribute `groups`, such as `pose 0:3, feature_1 3:5`",
-                           [&](const Handle& root) {
-                               return of_arm(root, named.first, named.second, [&](const Handle& group) {
-                                   const FileSource source(group);
-                                   const auto again = [path, segments](int other) {
-                                       return read_in_chart(path, {}, segments, other);
-                                   };
-                                   Record record =
-                                       read_in_chart(RecordReader(source), path, progress, segments, chart, again);
-                                   if (source.has_attribute("log", "")) record.log = source.text("log", "");
-                                   return record;
-                               });
-                           });
+    hdf5::read_file(named.first,
+                    "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
+                    "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
+                    "name component groups in the attribute `groups`, such as `pose 0:3, feature_1 3:5`",
+                    [&](const Handle& root) {
+                        return of_arm(root, named.first, named.second, [&](const Handle& group) {
+                            use(FileSource(group));
+                            return true;
+                        });
+                    });
 }
 
 }  // namespace
 
 Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress, int segments) {
-    Record record = read_in_chart(path, progress, segments, 0);
+    Record record;
+    const ReopenRecord reopen = [path](const auto& use) {
+        with_record(path, [&](const FileSource& source) { use(RecordReader(source)); });
+    };
+    with_record(path, [&](const FileSource& source) {
+        record = read_reopenable(RecordReader(source), path, progress, segments, reopen);
+        if (source.has_attribute("log", "")) record.log = source.text("log", "");
+    });
     if (const std::string arm = parted(path).second; !arm.empty()) record.results.arms.front().name = arm;
     return record;
 }

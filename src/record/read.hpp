@@ -21,9 +21,11 @@ void each_step(const RecordReader& reader, const std::function<void(const Record
 /// Throws InputError where `read_record` would, and reads no more than this needs.
 void check_record(const RecordArrays& arrays);
 
-/// Reads the record in its own chart, or in another one of its manifold [manifold.hpp, take_chart]. `name` names the
-/// scenario; `read_again(chart)` does the same once more. Throws PlacedError.
-Record read_in_chart(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,
-                     int chart, const std::function<Record(int)>& read_again);
+/// Opens a record once more and calls this with its reader.
+using ReopenRecord = std::function<void(const std::function<void(RecordReader)>&)>;
+
+/// Reads the record in its own chart. `name` names the scenario. Throws PlacedError.
+Record read_reopenable(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,
+                            const ReopenRecord& reopen);
 
 }  // namespace credence

@@ -2,10 +2,12 @@
 
 #include <credence/error.hpp>
 
+#include "record/about_means.hpp"
 #include "record/presence.hpp"
 #include "record/segments.hpp"
 #include "record/totals.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 namespace credence {
@@ -47,15 +49,32 @@ Record read_record(const RecordReader& reader, const std::string& name, const Re
     return read_record(reader, name, progress, segments, DivergedTrials::set_aside, Copies::fail);
 }
 
-Record read_in_chart(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,
-                     int chart, const std::function<Record(int)>& read_again) {
-    std::optional<Manifold>& manifold = reader.manifold();
-    if (manifold) manifold->take_chart(chart);
-    Record record = read_record(reader, name, progress, segments);
+Record read_reopenable(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,
+                            const ReopenRecord& reopen) {
+    const std::optional<Manifold>& manifold = reader.manifold();
     const int charts = manifold ? manifold->charts() : 1;
+    Record record = read_record(reader, name, progress, segments);
     if (charts > 1) record.chart = manifold->chart();
-    for (int other = 1; chart == 0 && other < charts; ++other)
-        record.in_other_charts.push_back([read_again, other] { return read_again(other); });
+    for (int other = 1; other < charts; ++other)
+        record.in_other_charts.push_back([reopen, name, segments, other] {
+            Record again;
+            reopen([&](RecordReader one) {
+                one.manifold()->take_chart(other);
+                again = read_record(one, name, {}, segments);
+                again.chart = one.manifold()->chart();
+            });
+            return again;
+        });
+    std::vector<char> counted;
+    const ArmResults& arm = record.results.arms.front();
+    for (const double status : arm.columns.in_memory()[status_column(record.results.columns)])
+        counted.push_back(counts(static_cast<Status>(static_cast<int>(status))));
+    if (std::ranges::count(counted, 1) >= least_segments && has_step_means(reader.shape()))
+        record.about_means = [reopen, name, counted] {
+            AboutMeans about;
+            reopen([&](const RecordReader& one) { about = read_about_means(one, name, counted); });
+            return about;
+        };
     return record;
 }
 
@@ -75,19 +94,13 @@ auto with_reader(const RecordArrays& arrays, const Use& use) {
     }
 }
 
-Record read_in_chart(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress, int segments,
-                     int chart) {
-    return with_reader(arrays, [&](RecordReader reader) {
-        return read_in_chart(
-            std::move(reader), name, progress, segments, chart,
-            [&arrays, name, segments](int again) { return read_in_chart(arrays, name, {}, segments, again); });
-    });
-}
-
 }  // namespace
 
 Record read_record(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress, int segments) {
-    return read_in_chart(arrays, name, progress, segments, 0);
+    const ReopenRecord reopen = [&arrays](const auto& use) { with_reader(arrays, use); };
+    return with_reader(arrays, [&](RecordReader reader) {
+        return read_reopenable(std::move(reader), name, progress, segments, reopen);
+    });
 }
 
 void check_record(const RecordArrays& arrays) {

@@ -86,6 +86,15 @@ bool is_too_large(const Finding& finding) {
     return finding.what == Fault::optimistic && (finding.about == Subject::size || finding.about == Subject::direction);
 }
 
+/// Whether a mean error or the spread about it is what is too large.
+void attribute_errors(const Record& record, ArmReport& arm) {
+    const auto speaks = [](const Finding& one) { return one.what == Fault::optimistic || one.what == Fault::biased; };
+    if (!record.about_means || !std::ranges::any_of(arm.consistency.findings, speaks)) return;
+    const AboutMeans about = record.about_means();
+    arm.consistency.attribution = attribute(arm.evidence, arm.consistency,
+                                            evidence_of(about.results, about.results.arms.front()), about.share);
+}
+
 /// Gives the means of the whole record the intervals of its segments.
 void set_means(const ScenarioResults& segments, ArmReport& arm) {
     const Evidence& evidence = arm.evidence;
@@ -172,6 +181,7 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     hint_at_gaps(arm.gaps, arm.consistency);
     hint_at_gate(record, arm.evidence, arm.consistency);
     hint_at_innovations(arm.evidence, arm.consistency);
+    attribute_errors(record, arm);
     name_absent_groups(arm.evidence, limits, report.not_judged);
     try_other_charts(record, arm);
     return report;

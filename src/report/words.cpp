@@ -112,6 +112,15 @@ std::string reached_text(const ArmReport& arm) {
     return parts.empty() ? "" : "shown at 95 %: " + joined(parts);
 }
 
+/// `nine of ten such studies would find NEES/dim of 0.61 or 1.34`
+std::string findable_text(const ArmReport& arm) {
+    const Interval& faults = arm.consistency.smallest_faults;
+    std::vector<std::string> found;
+    if (!std::isnan(faults.low)) found.push_back(number(faults.low, 2));
+    if (!std::isnan(faults.high)) found.push_back(number(faults.high, 2));
+    return found.empty() ? "" : "nine of ten such studies would find NEES/dim of " + joined(found, " or ");
+}
+
 /// The suspicions, those that need the fewest trials first.
 std::vector<std::string> suspicion_texts(const ArmReport& arm) {
     constexpr std::size_t most = 3;
@@ -135,6 +144,7 @@ std::vector<std::string> undecided_reasons(const ArmReport& arm) {
     std::ranges::copy(suspicion_texts(arm), std::back_inserter(reasons));
     if (const std::string text = needed_text(arm); !text.empty()) reasons.push_back(text);
     if (const std::string text = reached_text(arm); !text.empty()) reasons.push_back(text);
+    if (const std::string text = findable_text(arm); !text.empty()) reasons.push_back(text);
     return reasons;
 }
 
@@ -230,6 +240,7 @@ std::vector<Reason> reasons_of(const ArmReport& arm) {
     if (std::any_of(arm.evidence.whiteness.begin(), arm.evidence.whiteness.end(),
                     [](const Whiteness& lag) { return !lag.known(); }))
         reasons.push_back({"note, innovations: their correlation could not be computed", {}});
+    if (verdict.attribution) reasons.push_back({sentence(*verdict.attribution), {}});
     for (const std::string& hint : verdict.hints) reasons.push_back({"hint: " + hint, {}});
     const double share_of_ten = 10 / static_cast<double>(arm.evidence.trials);
     if (const WorstTrials& worst = arm.evidence.worst; worst.share > std::max(0.2, 2 * share_of_ten)) {

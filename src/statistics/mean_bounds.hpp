@@ -44,8 +44,8 @@ inline constexpr double unseen_size = 9;
 /// Upper bound, at confidence 1 - level, of the share of trials of which none was seen in N: 1 - level^(1/N).
 double unseen_share(double level, double trials);
 
-/// m - t(level, N - 1) s / sqrt(N), and the same upwards. Infinite for one trial. They hold for the trials that are not
-/// lost: without a bound on its values, the mean of positive numbers has no upper bound [Bahadur and Savage 1956].
+/// m - t(level, N - 1) s / sqrt(N), and the same upwards. Infinite for one trial. They hold for the trials that did not
+/// diverge: without a bound on its values, the mean of positive numbers has no upper bound [Bahadur and Savage 1956].
 double lower_bound(const PositiveSample& sample, double level);
 double upper_bound(const PositiveSample& sample, double level);
 

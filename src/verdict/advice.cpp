@@ -1,5 +1,6 @@
 // How many trials would show that a filter is consistent.
 
+#include "base/nan.hpp"
 #include "statistics/moments/advice.hpp"
 #include "verdict/judgement.hpp"
 
@@ -28,6 +29,31 @@ TrialMoments first_trials(const Evidence& evidence) {
 }
 
 }  // namespace
+
+/// The relative spread stays what it is; the mean is one that nine of ten studies are beyond.
+Interval smallest_faults(const Evidence& evidence, const Limits& limits) {
+    if (evidence.groups.empty() || evidence.has_offsets()) return {nan, nan};
+    const GroupEvidence& state = evidence.groups.front();
+    const double level = level_of_group(levels::run, 0, groups_judged(evidence)) / 2,
+                 error = normal_quantile(0.2) * state.run.standard_error / state.run.mean;
+    const auto is_found = [&](double fault) {
+        PositiveSample sample = positive_sample(state.run, state.largest);
+        const double mean = fault * (fault > 1 ? 1 - error : 1 + error), scale = fault / sample.mean;
+        sample = {sample.trials, mean, sample.standard_deviation * scale, sample.largest * scale};
+        const MeanClaim claim = claim_on_size(sample, state.dimension, level, evidence, limits.margin);
+        return fault > 1 ? claim.above : claim.below;
+    };
+    const auto smallest = [&](double most) {
+        if (!is_found(most)) return nan;
+        double missed = 0, found = std::log(most);
+        for (int i = 0; i < 30; ++i) {
+            const double middle = (missed + found) / 2;
+            (is_found(std::exp(middle)) ? found : missed) = middle;
+        }
+        return std::exp(found);
+    };
+    return {smallest(0.01), smallest(100)};
+}
 
 TrialsNeeded trials_needed(const Evidence& evidence, const Limits& limits) {
     if (!evidence.moments || evidence.groups.empty() || !evidence.joint) return {};

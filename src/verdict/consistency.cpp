@@ -163,6 +163,7 @@ Consistency Judgement::consistency(const Evidence& evidence) {
         verdict.reasons.push_back(first_of(unknown_) + ": too few " + evidence.units() +
                                   " to show that it is within its margin");
     verdict.suspicions = std::move(suspicions_);
+    verdict.smallest_faults = smallest_faults(evidence, limits_);
     if (more_trials_help_) verdict.trials_needed = trials_needed(evidence, limits_);
     return verdict;
 }

@@ -31,14 +31,17 @@ void withhold_too_small(const JudgedSize& size, const Interval& bounds, const Ev
                         true);
 }
 
+MeanClaim claim_on_size(PositiveSample sample, int dimension, double level, const Evidence& evidence, double margin) {
+    sample.of_few_numbers = evidence.steps_together() * dimension < many_numbers;
+    if (!evidence.segments.count && !sample.of_few_numbers) sample.largest = 0;
+    return claim_on_nees(sample, degrees_over_steps(sample, dimension, evidence.steps_together()), level, margin);
+}
+
 void judge_size(const JudgedSize& size, int place, const Evidence& evidence, Judgement& judgement) {
     const double level = level_of_group(levels::run, place, groups_judged(evidence)) / 2,
                  margin = judgement.limits().margin;
-    const auto claim_on = [&](PositiveSample sample) {
-        sample.of_few_numbers = evidence.steps_together() * size.dimension < many_numbers;
-        if (!evidence.segments.count && !sample.of_few_numbers) sample.largest = 0;
-        const double degrees = degrees_over_steps(sample, size.dimension, evidence.steps_together());
-        return claim_on_nees(sample, degrees, level, margin);
+    const auto claim_on = [&](const PositiveSample& sample) {
+        return claim_on_size(sample, size.dimension, level, evidence, margin);
     };
     const auto add = [&](Side side, const PositiveSample& sample, const MeanClaim& claim) {
         judgement.add(side,

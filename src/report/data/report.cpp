@@ -141,10 +141,18 @@ Json arm_json(const Report& report, const ArmReport& arm) {
                                                          ? Json(segments.autocorrelation_time)
                                                          : Json()}};
     const Reached& reached = arm.consistency.reached;
+    const Interval& faults = arm.consistency.smallest_faults;
+    json["smallest_faults"] = {{"low", faults.low}, {"high", faults.high}};
     json["reached"] = {{"nees", reached.nees}, {"direction", reached.direction}, {"bias", reached.bias}};
     json["p_exact"] = arm.evidence.groups.empty() ? nan : t_test(arm.evidence.groups.front().run, 1);
     json["directions"] = directions_json(arm.consistency.directions);
     json["hints"] = arm.consistency.hints;
+    const std::optional<Attribution>& found = arm.consistency.attribution;
+    json["attribution"] = found ? Json{{"carrier", carrier_name(found->carrier)},
+                                       {"share", found->share},
+                                       {"nees_per_dimension", found->nees},
+                                       {"ci95", {found->interval.low, found->interval.high}}}
+                                : Json();
     json["worst_trials"] = {{"share", arm.evidence.worst.share}, {"trials", Json::array()}};
     for (const WorstTrial& one : arm.evidence.worst.trials)
         json["worst_trials"]["trials"].push_back(
@@ -221,6 +229,10 @@ public:
         for (const DirectionOfGroup& one : arm_.consistency.directions.largest)
             add("direction_level:" + one.group, one.level, nan, none);
         add_steps("direction_spectrum", arm_.consistency.directions.spectrum, {});
+        if (const std::optional<Attribution>& found = arm_.consistency.attribution) {
+            add("attribution_share:" + carrier_name(found->carrier), found->share, nan, none);
+            add("attribution_nees", found->nees, nan, found->interval);
+        }
         add_steps("distance_from_chi_square", arm_.evidence.distribution.distance, {});
         add("nci", arm_.evidence.credibility.nci, nan, none);
         add("inclination", arm_.evidence.credibility.inclination, nan, none);
