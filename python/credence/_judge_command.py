@@ -20,7 +20,7 @@ from credence._record import Record
 
 _columns = ("error", "estimate", "truth", "sigma", "variance", "covariance", "angles")
 _of_judge = ("margin", "margin-direction", "bias", "failed", "segments", "format", "require")
-_poses = ("manifold", "chart", "max_gap", "align", "time_offset", "planar")
+_poses = ("manifold", "chart", "max_gap", "align", "body", "time_offset", "planar", "pair")
 
 
 def _pairs(given: str) -> dict[str, str]:
@@ -58,7 +58,14 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--manifold", choices=["SE3", "R3 x SO3"], help="what the covariance of a pose is of")
     made.add_argument("--chart", choices=["local", "global"], help="the frame of the error: the body's or the world's")
     made.add_argument("--max-gap", type=float, metavar="SECONDS", help="between true poses that are interpolated (0.2)")
-    made.add_argument("--align", choices=["none", "first", "se3"], help="what moves the truth to the poses (none)")
+    made.add_argument(
+        "--align", choices=["none", "first", "se3", "yaw", "first-yaw"],
+        help="what moves the truth to the poses (none): the first pose or all, as a rigid body or about the vertical",
+    )  # fmt: skip
+    made.add_argument("--body", metavar="X,Y,Z[,QX,QY,QZ,QW]", help="the pose of the estimated body in the truth's")
+    made.add_argument(
+        "--pair", action="store_true", default=None, help="the truth is a second filter: judge both by their difference"
+    )
     made.add_argument("--time-offset", type=float, metavar="SECONDS", help="what is added to the times of the log")
     made.add_argument("--planar", choices=["yes", "no"], help="judge x, y and yaw alone, or all (what is estimated)")
     made.add_argument("--record", metavar="FILE.h5", help="keep the record of what was judged")
@@ -113,6 +120,8 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
     poses = {name: getattr(given, name) for name in _poses if getattr(given, name) is not None}
     if "planar" in poses:
         poses["planar"] = poses["planar"] == "yes"
+    if "body" in poses:
+        poses["body"] = poses["body"].split(",")
     used = {
         "text": {"truth", "times", "names", "units", *_poses},
         "bag": {"truth", "topic", "truth_topic", "units", *_poses},
@@ -170,6 +179,8 @@ def log_of(given: argparse.Namespace) -> str:
             words += [name, *value]
         elif option == "units" and value:
             words.append(f"{name}={','.join(map('='.join, value.items()))}")
+        elif value is True:
+            words.append(name)
         elif value:
             words += [f"{name}={one}" for one in (value if isinstance(value, list) else [value])]
         elif value == 0:

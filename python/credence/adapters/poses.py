@@ -2,55 +2,30 @@
 
 from __future__ import annotations
 
-import math
-import warnings
 from collections.abc import Iterable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from credence._errors import InputError, argument, invalid
-from credence.adapters.tables import Array, needed, neighbours, normalised, note, require_unit, say_matched, stacked
+from credence.adapters.frames import (
+    ALIGNMENTS,
+    Poses,
+    aligned,
+    body_offset,
+    check_frames,
+    found_offset,
+    from_vectors,
+    rotation,
+    with_body,
+    yaw_of,
+)
+from credence.adapters.tables import Array, neighbours, normalised, note, require_unit, say_matched, stacked
 
-ALIGNMENTS = ("none", "first", "se3")
 COMPONENTS = ["x", "y", "z", "roll", "pitch", "yaw"]
 _units = ["m"] * 3 + ["rad"] * 3
 _planar = [0, 1, 5]
-_longest_offset = 1.0  # s; that is looked for
-
-
-class Poses(NamedTuple):
-    """A trajectory: times (s), poses (x, y, z, and the quaternion x, y, z, w), and the covariances of (translation,
-    rotation) [step, 6, 6], if it has them."""
-
-    source: str
-    time: Array
-    pose: Array
-    covariance: Array | None = None
-    frame: str = ""
-    counted: bool = False  # its times are the numbers of its lines
-
-    def at(self, rows: NDArray[np.intp]) -> Poses:
-        if np.array_equal(rows, np.arange(len(self.time))):
-            return self
-        covariance = None if self.covariance is None else self.covariance[rows]
-        return self._replace(time=self.time[rows], pose=self.pose[rows], covariance=covariance)
-
-
-def _rotations() -> Any:
-    return needed("scipy.spatial.transform", "scipy", "turn poses").Rotation
-
-
-def rotation(quaternions: Array) -> Any:
-    """Rotations of SciPy."""
-    return _rotations().from_quat(quaternions)
-
-
-def quaternions(matrices: Array) -> Array:
-    """Quaternions (x, y, z, w) of the nearest rotations."""
-    turned: Array = _rotations().from_matrix(matrices).as_quat()
-    return turned
 
 
 def _require_times(estimate: Poses, truth: Poses) -> None:
@@ -99,107 +74,28 @@ def in_order(poses: Poses) -> Poses:
     return poses.at(len(back) - 1 - last)
 
 
-def interpolated(truth: Poses, times: Array, max_gap: float) -> tuple[NDArray[np.intp], Array]:
+def interpolated(truth: Poses, times: Array, max_gap: float) -> tuple[NDArray[np.intp], Poses]:
     """Indices of the times that have a truth, and the poses there: positions on straight lines between two true poses
-    that are at most `max_gap` (s) apart, orientations on geodesics of SO(3) [Shoemake 1985]."""
+    that are at most `max_gap` (s) apart, orientations on geodesics of SO(3) [Shoemake 1985], and covariances between
+    those of the two."""
     found, before, after, place = neighbours(truth.time, times, max_gap)
     share, one, other = place[:, None], truth.pose[before], truth.pose[after]
-    poses = np.where(share == 1, other, one)
+    poses, covariance = np.where(share == 1, other, one), truth.covariance
     if ((share > 0) & (share < 1)).any():
         poses[:, :3] = (1 - share) * one[:, :3] + share * other[:, :3]
         first = rotation(one[:, 3:])
         turn = (first.inv() * rotation(other[:, 3:])).as_rotvec()
-        poses[:, 3:] = (first * _rotations().from_rotvec(share * turn)).as_quat()
-    return found, poses
+        poses[:, 3:] = (first * from_vectors(share * turn)).as_quat()
+    if covariance is not None:
+        covariance = covariance[before] + share[..., None] * (covariance[after] - covariance[before])
+    return found, truth._replace(time=times[found], pose=poses, covariance=covariance)
 
 
 def _associated(estimate: Poses, truth: Poses, max_gap: float, time_offset: float) -> tuple[Poses, Poses]:
     times = estimate.time + time_offset
-    found, poses = interpolated(truth, times, max_gap)
+    found, at = interpolated(truth, times, max_gap)
     say_matched(estimate.source, times, found, truth.source, truth.time, max_gap)
-    return estimate.at(found), truth._replace(time=times[found], pose=poses)
-
-
-def aligned(estimate: Poses, truth: Poses, align: str) -> Poses:
-    """The truth, moved as a rigid body to the estimate: by their first poses, or so that the squared differences of the
-    positions are smallest [Umeyama 1991, without a scale]."""
-    if align == "none":
-        return truth
-    e, t = estimate.pose, truth.pose
-    if align == "first":
-        turn = rotation(e[0, 3:]) * rotation(t[0, 3:]).inv()
-        pivot, at = t[0, :3], e[0, :3]
-    else:
-        pivot, at = t[:, :3].mean(axis=0), e[:, :3].mean(axis=0)
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of positions on a line, about which any turn will do
-            turn = _rotations().align_vectors(e[:, :3] - at, t[:, :3] - pivot)[0]
-    return truth._replace(pose=np.hstack([at + turn.apply(t[:, :3] - pivot), (turn * rotation(t[:, 3:])).as_quat()]))
-
-
-def found_offset(estimate: Poses, truth: Poses) -> tuple[float, float]:
-    """What added to the times of the estimate makes the squared differences of positions about their mean smallest (s),
-    and by what share it does so."""
-    inside = (estimate.time >= truth.time[0] + _longest_offset) & (estimate.time <= truth.time[-1] - _longest_offset)
-    rows = np.flatnonzero(inside)
-    rows = rows[:: max(1, len(rows) // 500)]
-    if len(rows) < 20:
-        return 0.0, 0.0
-    offsets = np.linspace(-_longest_offset, _longest_offset, 401)
-    columns = np.ascontiguousarray(truth.pose[:, :3].T)
-
-    def spread(offset: float) -> float:
-        true = [np.interp(estimate.time[rows] + offset, truth.time, column) for column in columns]
-        return float(np.var(estimate.pose[rows, :3] - np.transpose(true), axis=0).sum())
-
-    spreads = [spread(offset) for offset in offsets]
-    best = int(np.argmin(spreads))
-    if best in (0, len(offsets) - 1):  # it may be smaller still farther away
-        return 0.0, 0.0
-    left, least, right = spreads[best - 1 : best + 2]
-    curvature = left - 2 * least + right
-    between = (left - right) / (2 * curvature) if curvature > 0 else 0.0
-    offset = float(offsets[best] + between * (offsets[1] - offsets[0]))
-    return offset, 1 - spread(offset) / max(spreads[len(offsets) // 2], np.finfo(float).tiny)
-
-
-def _sigmas(difference: float, block: Array) -> float:
-    """How many of the largest sigmas of a covariance a difference is."""
-    largest = float(np.linalg.eigvalsh(block)[-1])
-    return difference / math.sqrt(largest) if largest > 0 else 0.0
-
-
-def _check_frames(estimate: Poses, truth: Poses, kept: Sequence[int]) -> None:
-    """Notes frames of other names, and a first pose that is far from the truth."""
-    assert estimate.covariance is not None
-    if estimate.frame and truth.frame and estimate.frame != truth.frame:
-        note(f"{estimate.source}: its poses are in the frame {estimate.frame}, those of the truth in {truth.frame}")
-    places = [i for i in kept if i < 3]
-    away = float(np.linalg.norm((estimate.pose[0] - truth.pose[0])[places]))
-    sigmas = _sigmas(away, estimate.covariance[0][np.ix_(places, places)]) if places else 0.0
-    far = f"{away:.3g} m"
-    turns = [i for i in kept if i >= 3]
-    if turns:
-        half = float(normalised(estimate.pose[0, 3:]) @ normalised(truth.pose[0, 3:]))
-        angle = 2 * math.acos(min(abs(half), 1.0))
-        if len(turns) == 1:
-            angle = abs(float(_wrapped(yaw_of(estimate.pose[0]) - yaw_of(truth.pose[0]))))
-        if (of_angle := _sigmas(angle, estimate.covariance[0][np.ix_(turns, turns)])) > sigmas:
-            sigmas, far = of_angle, f"{angle:.3g} rad"
-    if sigmas > 5:
-        note(
-            f"{estimate.source}: its first pose is {far} from the truth, {sigmas:.3g} sigmas. Are both in one frame? "
-            f"Nothing is aligned unless you ask for it ({argument('align')})."
-        )
-
-
-def _wrapped(angle: Any) -> Any:
-    return np.remainder(angle + np.pi, 2 * np.pi) - np.pi
-
-
-def yaw_of(poses: Array) -> Any:
-    x, y, z, w = np.moveaxis(poses[..., 3:], -1, 0)
-    return np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    return estimate.at(found), at
 
 
 def estimated_components(runs: Sequence[Poses]) -> list[int]:
@@ -275,6 +171,43 @@ def _states(runs: Iterable[Poses]) -> Array:
     return stacked([np.hstack([run.pose[:, :3], normalised(run.pose[:, 3:])]) for run in runs])
 
 
+def _require_options(align: str, manifold: str, chart: str, pair: bool, body: Any) -> None:
+    if align not in ALIGNMENTS:
+        raise invalid("align", align, f"must be one of {', '.join(ALIGNMENTS)}", "Give one of them")
+    if manifold not in ("SE3", "R3 x SO3"):
+        raise invalid("manifold", manifold, "must be SE3 or R3 x SO3", "Give one of them")
+    if pair and (body is not None or (align != "none" and (manifold, chart) == ("SE3", "global"))):
+        why = "moves the second filter's poses, and not what its covariance is of"
+        raise InputError(f"cannot judge this pair ({argument('align' if body is None else 'body')} {why}). Move them.")
+
+
+def _one_gauge(estimate: Poses, truth: Poses, align: str, turned: Sequence[int]) -> tuple[Poses, Poses]:
+    """The estimate and the truth that was moved to it, without the pose by which it was: that one has no error."""
+    truth = aligned(estimate, truth, align, turned)
+    if not align.startswith("first"):
+        return estimate, truth
+    if len(estimate.time) < 2:
+        raise InputError(f"{estimate.source}: it has no pose behind the first, by which it is aligned. Give more.")
+    rest = np.arange(1, len(estimate.time))
+    return estimate.at(rest), truth.at(rest)
+
+
+def _added(estimate: Poses, truth: Poses) -> Poses:
+    """The estimate with the covariance of its difference from that of another filter."""
+    assert estimate.covariance is not None
+    assert truth.covariance is not None
+    if estimate.covariance.shape != truth.covariance.shape:
+        raise InputError(f"{truth.source}: its covariances are not of what those of {estimate.source} are. Give these.")
+    return estimate._replace(covariance=estimate.covariance + truth.covariance)
+
+
+def say_independent(first: str, second: str) -> None:
+    note(
+        f"{first} and {second} are taken for independent: their difference is judged against the sum of both "
+        "covariances. What both share makes it smaller, and it says whether both can be right, not which is wrong"
+    )
+
+
 def pose_arguments(
     pairs: Sequence[tuple[Poses, Poses]],
     *,
@@ -284,32 +217,40 @@ def pose_arguments(
     align: str = "none",
     time_offset: float = 0.0,
     planar: bool | None = None,
+    body: Any = None,
+    pair: bool = False,
 ) -> dict[str, Any]:
     """The arguments of judge from a pair of estimate and truth for each run; :func:`from_tum` says what each option
-    does."""
-    if align not in ALIGNMENTS:
-        raise invalid("align", align, "must be none, first or se3", "Give one of them")
-    if manifold not in ("SE3", "R3 x SO3"):
-        raise invalid("manifold", manifold, "must be SE3 or R3 x SO3", "Give one of them")
-    for estimate, _ in pairs:
-        if estimate.covariance is None:
-            raise InputError(f"{estimate.source}: its poses have no covariances. Give a log that has them.")
-    for pair in pairs:
-        _require_times(*pair)
-    ordered = [(in_order(_require_poses(estimate)), in_order(_without_gaps(truth))) for estimate, truth in pairs]
+    does, and :func:`from_pair` what `pair`."""
+    _require_options(align, manifold, chart, pair, body)
+    offset = body_offset(body)
+    for estimate, truth in pairs:
+        for each in (estimate, truth) if pair else (estimate,):
+            if each.covariance is None:
+                raise InputError(f"{each.source}: its poses have no covariances. Give a log that has them.")
+        _require_times(estimate, truth)
+    ordered = [
+        (in_order(_require_poses(estimate)), with_body(in_order(_without_gaps(truth)), offset))
+        for estimate, truth in pairs
+    ]
     runs = [_associated(estimate, truth, max_gap, time_offset) for estimate, truth in ordered]
+    turned = () if manifold == "SE3" else (0,) if chart == "local" else (0, 3)
+    runs = [_one_gauge(*run, align, turned if pair else ()) for run in runs]
+    if pair:
+        runs = [(_added(*run), run[1]) for run in runs]
+        say_independent(runs[0][0].source, runs[0][1].source)
     kept = _kept_components([estimate for estimate, _ in runs], planar)
-    truths = [aligned(*run, align) for run in runs]
-    for (estimate, _), truth, (_, whole) in zip(runs, truths, ordered):
-        offset, gain = found_offset(estimate, whole if align == "none" else truth)
+    for (estimate, truth), (_, whole) in zip(runs, ordered):
+        at, gain = found_offset(estimate, whole if align == "none" else truth)
         if time_offset or gain < 0.5:
-            _check_frames(estimate, truth, kept)
+            if align == "none":
+                check_frames(estimate, truth, kept)
         else:  # which moves the first pose, too
             note(
-                f"{estimate.source}: with {offset:+.3g} s added to its times the squared errors of its positions "
+                f"{estimate.source}: with {at:+.3g} s added to its times the squared errors of its positions "
                 f"would be {gain:.0%} smaller. Nothing is shifted unless you ask for it ({argument('time_offset')})."
             )
-    true, estimated = (_states(each) for each in (truths, [estimate for estimate, _ in runs]))
+    true, estimated = (_states(each) for each in ([truth for _, truth in runs], [estimate for estimate, _ in runs]))
     return {
         **_of_components(kept, true, estimated, stacked(_covariances(run for run, _ in runs)), manifold, chart),
         "steps": np.array([len(estimate.time) for estimate, _ in runs]),

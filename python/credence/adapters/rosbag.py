@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from credence._errors import InputError, argument
-from credence.adapters.poses import Poses, pose_arguments
+from credence.adapters.frames import Poses
+from credence.adapters.poses import pose_arguments
 from credence.adapters.tables import Path, needed, note, one_line, paired, units_given
 from credence.adapters.trajectories import read_poses
 

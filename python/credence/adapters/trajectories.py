@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from credence import InputError
-from credence.adapters.poses import Poses, pose_arguments, quaternions
+from credence.adapters.frames import Poses, quaternions
+from credence.adapters.poses import pose_arguments
 from credence.adapters.tables import (
     Array,
     Path,
@@ -136,6 +137,7 @@ def from_tum(
     align: str = "none",
     time_offset: float = 0.0,
     planar: bool | None = None,
+    body: Any = None,
     units: Mapping[str, str] | None = None,
 ) -> dict[str, Any]:
     """Trajectories in TUM's format, with the covariance of each pose behind it.
@@ -158,15 +160,19 @@ def from_tum(
     max_gap : float
         The truth is interpolated between two poses that are at most so far apart (s). Poses without a truth are left
         out.
-    align : ``"none"``, ``"first"`` or ``"se3"``
-        What moves the truth to the estimate: nothing, the first pose, or the rigid motion that makes the squared
-        differences of positions smallest (in ``evo``: ``--align``). It makes errors smaller than they are.
+    align : ``"none"``, ``"first"``, ``"se3"``, ``"first-yaw"`` or ``"yaw"``
+        What moves the truth to the estimate: nothing, the first pose, which is then not judged, or the rigid motion
+        that makes the squared differences of positions smallest (in ``evo``: ``--align``); or of both the turn about
+        the vertical alone, beside the translation, for filters that know it. It makes errors smaller than they are.
     time_offset : float
         What is added to the times of the estimate (s).
     planar : bool
         Whether x, y and yaw alone are judged, on ``SE2`` or, of ``"R3 x SO3"``, on ``R2 x SO2``. By default what the
         log estimates is judged: without components whose variance is a placeholder (zero, negative, 10^6), and without
         z, roll and pitch that never change.
+    body : array [7] or [3]
+        The pose (x, y, z and the quaternion x, y, z, w; m) of the body whose poses are estimated in the body whose
+        poses the truth has, such as a camera's in that of a prism.
     units : dict
         Of `time` and `truth_time`, ``"s"``, ``"ms"``, ``"us"`` or ``"ns"``, where a file has another unit than its
         format: ``{"time": "ms"}``. Times that would be less than 1 µs apart are refused.
@@ -186,7 +192,7 @@ def from_tum(
     """
     return from_files(
         estimate, truth, units=units,
-        manifold=manifold, chart=chart, max_gap=max_gap, align=align, time_offset=time_offset, planar=planar,
+        manifold=manifold, chart=chart, max_gap=max_gap, align=align, time_offset=time_offset, planar=planar, body=body,
     )  # fmt: skip
 
 

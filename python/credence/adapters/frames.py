@@ -1,0 +1,179 @@
+"""Trajectories, and what lies between the frames of an estimate and of its truth: a motion of the world, an offset of
+the body, a shift of the times."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from credence._errors import argument, wrong
+from credence.adapters.tables import Array, needed, normalised, note, require_unit
+
+ALIGNMENTS = ("none", "first", "se3", "yaw", "first-yaw")
+_longest_offset = 1.0  # s; that is looked for
+
+
+class Poses(NamedTuple):
+    """A trajectory: times (s), poses (x, y, z, and the quaternion x, y, z, w), and, if it has them, the covariances of
+    (translation, rotation) [step, 6, 6], or of x, y and z alone [step, 3, 3]."""
+
+    source: str
+    time: Array
+    pose: Array
+    covariance: Array | None = None
+    frame: str = ""
+    counted: bool = False  # its times are the numbers of its lines
+
+    def at(self, rows: NDArray[np.intp]) -> Poses:
+        if np.array_equal(rows, np.arange(len(self.time))):
+            return self
+        covariance = None if self.covariance is None else self.covariance[rows]
+        return self._replace(time=self.time[rows], pose=self.pose[rows], covariance=covariance)
+
+    def moved(self, turn: Any, pivot: Array, at: Array, turned: Sequence[int] = ()) -> Poses:
+        """The poses in a frame that is turned about `pivot`, which comes to lie at `at`; of the covariances the blocks
+        of three that begin at the indices `turned` are turned, too."""
+        covariance = self.covariance
+        if covariance is not None and len(turned):
+            J = np.eye(covariance.shape[-1])
+            for i in turned:
+                J[i : i + 3, i : i + 3] = turn.as_matrix()
+            covariance = J @ covariance @ J.T
+        places, turns = at + turn.apply(self.pose[:, :3] - pivot), turn * rotation(self.pose[:, 3:])
+        return self._replace(pose=np.hstack([places, turns.as_quat()]), covariance=covariance)
+
+
+def _rotations() -> Any:
+    return needed("scipy.spatial.transform", "scipy", "turn poses").Rotation
+
+
+def rotation(quaternions: Array) -> Any:
+    """Rotations of SciPy."""
+    return _rotations().from_quat(quaternions)
+
+
+def from_vectors(vectors: Array) -> Any:
+    return _rotations().from_rotvec(vectors)
+
+
+def quaternions(matrices: Array) -> Array:
+    """Quaternions (x, y, z, w) of the nearest rotations."""
+    turned: Array = _rotations().from_matrix(matrices).as_quat()
+    return turned
+
+
+def yaw_of(poses: Array) -> Any:
+    x, y, z, w = np.moveaxis(poses[..., 3:], -1, 0)
+    return np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+
+
+def aligned(estimate: Poses, truth: Poses, align: str, turned: Sequence[int] = ()) -> Poses:
+    """The truth, moved as a rigid body to the estimate: by their first poses, or so that the squared differences of the
+    positions are smallest [Umeyama 1991, without a scale]; or turned about the vertical alone, by the rotation nearest
+    to that of either [Zhang and Scaramuzza 2018, III.C]."""
+    if align == "none":
+        return truth
+    e, t = estimate.pose, truth.pose
+    if align.startswith("first"):
+        pivot, at = t[0, :3], e[0, :3]
+        turn = rotation(e[0, 3:]) * rotation(t[0, 3:]).inv()
+        matrix = turn.as_matrix()
+    else:
+        pivot, at = t[:, :3].mean(axis=0), e[:, :3].mean(axis=0)
+        matrix = (e[:, :3] - at).T @ (t[:, :3] - pivot)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of positions on a line, about which any turn will do
+            turn = _rotations().align_vectors(e[:, :3] - at, t[:, :3] - pivot)[0]
+    if align.endswith("yaw"):
+        turn = from_vectors(np.array([0, 0, np.arctan2(matrix[1, 0] - matrix[0, 1], matrix[0, 0] + matrix[1, 1])]))
+    return truth.moved(turn, pivot, at, turned)
+
+
+def body_offset(body: Any) -> Array | None:
+    """The pose of the estimate's body in that of the truth: seven numbers, or the three of its position."""
+    if body is None:
+        return None
+    try:
+        offset = np.asarray(body, dtype=float).ravel()
+    except (TypeError, ValueError):
+        raise wrong("body", "does not hold numbers", "Give x,y,z,qx,qy,qz,qw, or x,y,z") from None
+    if offset.size not in (3, 7) or not np.isfinite(offset).all():
+        why = f"has {offset.size} numbers (must be the 7 of x,y,z,qx,qy,qz,qw, or x,y,z) that are finite"
+        raise wrong("body", why, "Give the pose of the estimate's body in that of the truth")
+    offset = np.concatenate([offset, [0.0, 0, 0, 1][: 7 - offset.size]])
+    require_unit(argument("body"), offset[None, 3:])
+    return offset
+
+
+def with_body(truth: Poses, offset: Array | None) -> Poses:
+    """The true poses of the body that is estimated."""
+    if offset is None:
+        return truth
+    turns = rotation(truth.pose[:, 3:])
+    places = truth.pose[:, :3] + turns.apply(offset[:3])
+    return truth._replace(pose=np.hstack([places, (turns * rotation(offset[3:])).as_quat()]))
+
+
+def found_offset(estimate: Poses, truth: Poses) -> tuple[float, float]:
+    """What added to the times of the estimate makes the squared differences of positions about their mean smallest (s),
+    and by what share it does so."""
+    inside = (estimate.time >= truth.time[0] + _longest_offset) & (estimate.time <= truth.time[-1] - _longest_offset)
+    rows = np.flatnonzero(inside)
+    rows = rows[:: max(1, len(rows) // 500)]
+    if len(rows) < 20:
+        return 0.0, 0.0
+    offsets = np.linspace(-_longest_offset, _longest_offset, 401)
+    columns = np.ascontiguousarray(truth.pose[:, :3].T)
+
+    def spread(offset: float) -> float:
+        true = [np.interp(estimate.time[rows] + offset, truth.time, column) for column in columns]
+        return float(np.var(estimate.pose[rows, :3] - np.transpose(true), axis=0).sum())
+
+    spreads = [spread(offset) for offset in offsets]
+    best = int(np.argmin(spreads))
+    if best in (0, len(offsets) - 1):  # it may be smaller still farther away
+        return 0.0, 0.0
+    left, least, right = spreads[best - 1 : best + 2]
+    curvature = left - 2 * least + right
+    between = (left - right) / (2 * curvature) if curvature > 0 else 0.0
+    offset = float(offsets[best] + between * (offsets[1] - offsets[0]))
+    return offset, 1 - spread(offset) / max(spreads[len(offsets) // 2], np.finfo(float).tiny)
+
+
+def _sigmas(difference: float, block: Array) -> float:
+    """How many of the largest sigmas of a covariance a difference is."""
+    largest = float(np.linalg.eigvalsh(block)[-1])
+    return difference / math.sqrt(largest) if largest > 0 else 0.0
+
+
+def check_frames(estimate: Poses, truth: Poses, kept: Sequence[int]) -> None:
+    """Notes frames of other names, and a first pose that is far from the truth."""
+    assert estimate.covariance is not None
+    if estimate.frame and truth.frame and estimate.frame != truth.frame:
+        note(f"{estimate.source}: its poses are in the frame {estimate.frame}, those of the truth in {truth.frame}")
+    places = [i for i in kept if i < 3]
+    away = float(np.linalg.norm((estimate.pose[0] - truth.pose[0])[places]))
+    sigmas = _sigmas(away, estimate.covariance[0][np.ix_(places, places)]) if places else 0.0
+    far = f"{away:.3g} m"
+    turns = [i for i in kept if i >= 3]
+    if turns:
+        half = float(normalised(estimate.pose[0, 3:]) @ normalised(truth.pose[0, 3:]))
+        angle = 2 * math.acos(min(abs(half), 1.0))
+        if len(turns) == 1:
+            angle = abs(float(wrapped(yaw_of(estimate.pose[0]) - yaw_of(truth.pose[0]))))
+        if (of_angle := _sigmas(angle, estimate.covariance[0][np.ix_(turns, turns)])) > sigmas:
+            sigmas, far = of_angle, f"{angle:.3g} rad"
+    if sigmas > 5:
+        note(
+            f"{estimate.source}: its first pose is {far} from the truth, {sigmas:.3g} sigmas. Are both in one frame? "
+            f"Nothing is aligned unless you ask for it ({argument('align')})."
+        )
+
+
+def wrapped(angle: Any) -> Any:
+    return np.remainder(angle + np.pi, 2 * np.pi) - np.pi
