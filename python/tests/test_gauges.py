@@ -12,7 +12,7 @@ from conftest import refused
 from logs import Log, log, truth_at, write_bag
 from scipy.optimize import minimize
 from scipy.spatial.transform import Rotation
-from test_logs import judged, nees, tum, write
+from test_logs import euroc, judged, nees, tum, write
 
 import credence
 from credence import adapters
@@ -95,6 +95,55 @@ class TestBody:
         estimate, truth = map(str, tum(tmp_path, log(20)))
         assert judge_command([estimate, "--truth", truth, f"--body={body}"]) == 2
         assert re.search(message, capfd.readouterr().err)
+
+
+class TestQuaternions:
+    """Covariances of the seven numbers of a pose."""
+
+    @staticmethod
+    def seven(of: Log, chart: str) -> Array:
+        """[step, 7, 7]: P as that of the coordinates, by differences, and beside it a quaternion that is not of length
+        1 with sigma 0.5."""
+
+        def off(e: Array) -> Array:
+            turn, q = Rotation.from_rotvec(e[3:]), Rotation.from_quat(of.pose[:, 3:])
+            turned = turn * q if chart == "global" else q * turn
+            return np.hstack([of.pose[:, :3] + e[:3], turned.as_quat(canonical=False)])
+
+        J = np.stack([(off(1e-6 * axis) - off(-1e-6 * axis)) / 2e-6 for axis in np.eye(6)], axis=-1)
+        length = np.hstack([np.zeros((len(of.pose), 3)), of.pose[:, 3:]])
+        return J @ of.covariance @ J.swapaxes(1, 2) + 0.25 * length[:, :, None] * length[:, None]
+
+    @pytest.mark.parametrize("chart", ["local", "global"])
+    def test_three_directions_are_judged(self, tmp_path: Path, chart: str) -> None:
+        of, how = log(60), {"manifold": "R3 x SO3", "chart": chart}
+        P = self.seven(of, chart)
+        arguments = {"estimate": of.pose, "truth": of.pose, "covariance": P, "quaternion": "xyzw", **how}
+        with pytest.warns(UserWarning, match="the fourth, its length, has sigmas up to 0.5, and is left out"):
+            reduced = adapters.from_quaternions(**arguments)["covariance"]
+        np.testing.assert_allclose(reduced, of.covariance, atol=1e-9)
+        first = [0, 1, 2, 6, 3, 4, 5]
+        arguments |= {"estimate": of.pose[:, first], "covariance": P[:, first][..., first], "quaternion": "wxyz"}
+        with pytest.warns(UserWarning, match="the fourth"):
+            np.testing.assert_allclose(adapters.from_quaternions(**arguments)["covariance"], reduced, atol=1e-12)
+        truth = write(tmp_path / "truth.txt", of.truth_rows())
+        upper = P[(slice(None), *np.triu_indices(7))]
+        files = [write(tmp_path / "e.txt", np.c_[of.time, of.pose, P.reshape(60, 49)])]
+        files.append(write(tmp_path / "u.txt", np.c_[of.time, of.pose, upper]))
+        files.append(euroc(tmp_path / "e.csv", of.time, of.pose, P[:, first][..., first].reshape(60, 49)))
+        for file in files:
+            with pytest.warns(UserWarning, match="the fourth"):
+                read = adapters.from_euroc(file, truth, **how)
+            np.testing.assert_allclose(read["covariance"][0], of.covariance, atol=1e-8)
+
+    def test_refusals(self, tmp_path: Path) -> None:
+        of = log(20)
+        estimate = write(tmp_path / "e.txt", np.c_[of.time, of.pose, self.seven(of, "local").reshape(20, 49)])
+        truth = write(tmp_path / "truth.txt", of.truth_rows())
+        refused("invalid manifold=SE3 .a covariance of a quaternion", adapters.from_tum, estimate, truth)
+        given = {"estimate": of.pose, "covariance": of.covariance, "manifold": "R3 x SO3", "chart": "local"}
+        refused("there is no quaternion", adapters.from_quaternions, **given)
+        refused(r"shape \(20, 6, 6\) .must be \(20, 7, 7\)", adapters.from_quaternions, **given, quaternion="xyzw")
 
 
 class TestPair:

@@ -13,6 +13,7 @@ from credence.adapters.arrays import from_mat, from_npz
 from credence.adapters.columns import from_table
 from credence.adapters.objects import from_gtsam_poses, from_navlie, from_stonesoup
 from credence.adapters.pair import from_pair
+from credence.adapters.quaternions import from_quaternions
 from credence.adapters.rosbag import from_rosbag
 from credence.adapters.trajectories import from_euroc, from_kitti, from_openvins, from_tum
 from credence.adapters.ulog import from_ulog
@@ -26,6 +27,7 @@ __all__ = [
     "from_npz",
     "from_openvins",
     "from_pair",
+    "from_quaternions",
     "from_rosbag",
     "from_stonesoup",
     "from_table",

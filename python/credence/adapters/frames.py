@@ -20,7 +20,7 @@ _longest_offset = 1.0  # s; that is looked for
 
 class Poses(NamedTuple):
     """A trajectory: times (s), poses (x, y, z, and the quaternion x, y, z, w), and, if it has them, the covariances of
-    (translation, rotation) [step, 6, 6], or of x, y and z alone [step, 3, 3]."""
+    (translation, rotation) [step, 6, 6], of x, y and z alone [step, 3, 3], or of all seven numbers [step, 7, 7]."""
 
     source: str
     time: Array

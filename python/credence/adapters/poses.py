@@ -21,6 +21,7 @@ from credence.adapters.frames import (
     with_body,
     yaw_of,
 )
+from credence.adapters.quaternions import tangent
 from credence.adapters.tables import Array, neighbours, normalised, note, require_unit, say_matched, stacked
 
 COMPONENTS = ["x", "y", "z", "roll", "pitch", "yaw"]
@@ -192,6 +193,13 @@ def _one_gauge(estimate: Poses, truth: Poses, align: str, turned: Sequence[int])
     return estimate.at(rest), truth.at(rest)
 
 
+def _of_turns(poses: Poses, manifold: str, chart: str) -> Poses:
+    """Poses whose covariances are of three rotations, where they are of the four numbers of a quaternion."""
+    if poses.covariance is None or poses.covariance.shape[-1] != 7:
+        return poses
+    return poses._replace(covariance=tangent(poses.pose, poses.covariance, manifold, chart))
+
+
 def _added(estimate: Poses, truth: Poses) -> Poses:
     """The estimate with the covariance of its difference from that of another filter."""
     assert estimate.covariance is not None
@@ -230,7 +238,10 @@ def pose_arguments(
                 raise InputError(f"{each.source}: its poses have no covariances. Give a log that has them.")
         _require_times(estimate, truth)
     ordered = [
-        (in_order(_require_poses(estimate)), with_body(in_order(_without_gaps(truth)), offset))
+        (
+            _of_turns(in_order(_require_poses(estimate)), manifold, chart),
+            with_body(_of_turns(in_order(_without_gaps(truth)), manifold, chart), offset),
+        )
         for estimate, truth in pairs
     ]
     runs = [_associated(estimate, truth, max_gap, time_offset) for estimate, truth in ordered]

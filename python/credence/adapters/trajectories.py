@@ -31,6 +31,8 @@ from credence.adapters.tables import (
 
 _pose_columns = 8  # time, x, y, z, and the quaternion x, y, z, w
 _like_matrices = {wide + behind: wide for wide in (12, 16) for behind in (0, 21, 36)}  # numbers of a line of KITTI
+_w_last = [0, 1, 2, 4, 5, 6, 3]  # of the numbers of a pose in EuRoC's files
+_covariance_numbers = {36: 6, 21: 6, 49: 7, 28: 7}  # behind a pose; of seven, those of its quaternion
 _names: dict[str, Any] = {
     "component_names": ["x", "y", "z", "rx", "ry", "rz"],
     "component_units": ["m"] * 3 + ["rad"] * 3,
@@ -69,7 +71,7 @@ def read_poses(
     require_width(path, table, least=_pose_columns)
     if wide := 0 if euroc else _matrix_numbers(table):
         return _of_matrices(path, table, wide, times, asked, name)
-    pose = table[:, [1, 2, 3, 5, 6, 7, 4] if euroc else range(1, 8)]
+    pose = table[:, 1:8][:, _w_last if euroc else slice(None)]
     behind = table.shape[1] - _pose_columns
     if not euroc and table.shape[1] in _like_matrices:
         has = f"its lines have {table.shape[1]} numbers"
@@ -78,7 +80,10 @@ def read_poses(
             raise InputError(f"{source}: {has} and {either}. Check what kind of file it is.")
         note(f"{source}: {has} and are no matrices of KITTI: the first 8 are taken for TUM's time and pose")
     stamps = seconds(source, table[:, 0], asked or ("ns" if euroc else "s"), name, noted=not asked)
-    return Poses(source, stamps, pose, _behind(table, _pose_columns, behind if behind in (36, 21) else 0))
+    covariance = _behind(table, _pose_columns, behind if behind in _covariance_numbers else 0)
+    if euroc and covariance is not None and behind in (49, 28):
+        covariance = covariance[:, _w_last][..., _w_last]
+    return Poses(source, stamps, pose, covariance)
 
 
 def _matrix_numbers(table: Array) -> int:
@@ -111,7 +116,10 @@ def _of_matrices(path: Path, table: Array, wide: int, times: Path | None, asked:
 def _behind(table: Array, first: int, count: int) -> Array | None:
     """The covariances in `count` numbers behind the poses."""
     rest = table[:, first : first + count]
-    return None if not count else rest.reshape(-1, 6, 6) if count == 36 else from_upper(rest, 6)
+    if not count:
+        return None
+    size = _covariance_numbers[count]
+    return rest.reshape(-1, size, size) if count == size * size else from_upper(rest, size)
 
 
 def from_files(
@@ -144,6 +152,7 @@ def from_tum(
 
     A line is ``time x y z qx qy qz qw`` (s, m), and in the estimate 36 further numbers, the covariance of
     (translation, rotation) row by row (m, rad; the order of a ROS ``PoseWithCovariance``), or 21, its upper triangle.
+    49 or 28 are that of the seven numbers of the pose as they stand in the line, which is on ``"R3 x SO3"``.
 
     What is found and not used (frames that seem to differ, a time offset, poses without a truth, components that are
     not estimated) is noted as a Python warning.
