@@ -35,12 +35,15 @@ def parser() -> argparse.ArgumentParser:
         prog="python -m credence judge",
         description="The verdict on a filter from its log, whose suffix says what it is: poses with covariances (TUM "
         ".txt, EuRoC .csv, KITTI), a table (.csv with names), a bag (.bag, .mcap, .db3, a folder of ROS 2), .mat, "
-        ".npz, .ulg. Records (.h5) are read by `credence judge`, whose options are taken here, too.",
+        ".npz, .ulg, RTKLIB's .pos. Records (.h5) are read by `credence judge`, whose options are taken here, too.",
         epilog="Exit codes: 0 done, 1 what --require asks for does not hold, 2 bad input.",
         allow_abbrev=False,
     )
     made.add_argument("log", nargs="+", metavar="LOG", help="a log for each run")
-    made.add_argument("--truth", action="append", metavar="GT", help="its ground truth; or once for each log")
+    made.add_argument(
+        "--truth", action="append", metavar="GT",
+        help="its ground truth; or once for each log; of .pos also a point: LATITUDE,LONGITUDE,HEIGHT",
+    )  # fmt: skip
     made.add_argument("--topic", help="of a bag: its poses with covariances")
     made.add_argument("--truth-topic", metavar="TOPIC", help="of a bag: its truth, such as /gt or /tf:PARENT.CHILD")
     made.add_argument("--times", metavar="FILE", help="of KITTI: the times of the poses")
@@ -91,7 +94,7 @@ def _kind(word: str) -> str | None:
     suffix = Path(word).suffix.lower()
     if is_bag(word):
         return "bag"
-    if suffix in (".ulg", ".mat", ".npz"):
+    if suffix in (".ulg", ".mat", ".npz", ".pos"):
         return suffix[1:]
     return "text" if suffix in (".csv", ".txt", ".tum", ".kitti") else None
 
@@ -125,6 +128,7 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
     used = {
         "text": {"truth", "times", "names", "units", *_poses},
         "bag": {"truth", "topic", "truth_topic", "units", *_poses},
+        "pos": {"truth", "max_gap", "align", "time_offset", "planar", "pair"},
     }
     allowed = used.get(kind or "", {"rows"} if kind == "ulg" else {"names"})
     for option in ("truth", "topic", "truth_topic", "times", "rows", "names", "units", *_poses):
@@ -133,6 +137,10 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
     if kind == "bag":
         topics = {"topic": given.topic, "truth_topic": given.truth_topic}
         return adapters.from_rosbag(given.log, given.truth, **topics, units=given.units, **poses)
+    if kind in ("text", "pos") and not names and given.truth is None:
+        raise InputError("poses need a truth. Give --truth FILE; or the columns of a table that has both (--names).")
+    if kind == "pos":
+        return adapters.from_rtklib(given.log, given.truth, **poses)
     if kind != "text" and not isinstance(single, str):
         raise InputError(f"a verdict is on one .{kind} at a time, which has all runs in it. Give one.")
     if kind == "ulg":
@@ -142,8 +150,6 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
         return read(single, {what: name[0] for what, name in names.items()})
     if names:
         return _of_table(single, given.truth, names, given.units, given.max_gap)
-    if given.truth is None:
-        raise InputError("poses need a truth. Give --truth FILE; or the columns of a table that has both (--names).")
     return trajectories.from_files(given.log, given.truth, given.times, given.units, **poses)
 
 

@@ -813,6 +813,9 @@ class TestPage:
         frame = self.frame()
         frame.assign(yaw=turn * frame.yaw, gyaw=turn * frame.gyaw, syaw=turn * frame.syaw).to_csv("table.csv")
         scipy.io.savemat("results.mat", {"e": np.ones((2, 30)), "P": np.tile(np.eye(2)[:, :, None], (1, 1, 30))})
+        head = "%  GPST latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m) sdne(m) sdeu(m) sdun(m)"
+        rows = [f"2356 {i}.0 35.16 139.61 70.{i % 7} 1 9 .1 .1 .3 .02 -.01 .02" for i in range(40)]
+        Path("rover.pos").write_text("\n".join([head, *rows]))
         TestUlog.write(tmp_path / "flight.ulg", ("ekf2_innovations",))
 
     @staticmethod
@@ -826,7 +829,7 @@ class TestPage:
         page = (Path(__file__).parents[2] / "docs" / "logs.md").read_text(encoding="utf-8")
         code = {name: page.split(f"```{name}\n")[1].split("```")[0] for name in ("sh", "python")}
         commands = [shlex.split(line, comments=True) for line in code["sh"].splitlines() if line.startswith("python")]
-        assert len(commands) == 10
+        assert len(commands) == 11
         for _, _, _, _, *words in commands:
             assert judge_command(words) == 0, capfd.readouterr().err
             assert "one log of " in capfd.readouterr().out

@@ -15,6 +15,7 @@ from credence.adapters.objects import from_gtsam_poses, from_navlie, from_stones
 from credence.adapters.pair import from_pair
 from credence.adapters.quaternions import from_quaternions
 from credence.adapters.rosbag import from_rosbag
+from credence.adapters.rtklib import from_rtklib
 from credence.adapters.trajectories import from_euroc, from_kitti, from_openvins, from_tum
 from credence.adapters.ulog import from_ulog
 
@@ -29,6 +30,7 @@ __all__ = [
     "from_pair",
     "from_quaternions",
     "from_rosbag",
+    "from_rtklib",
     "from_stonesoup",
     "from_table",
     "from_tum",

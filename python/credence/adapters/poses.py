@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from credence._errors import InputError, argument, invalid
+from credence._errors import InputError, argument, invalid, wrong
 from credence.adapters.frames import (
     ALIGNMENTS,
     Poses,
@@ -118,6 +118,8 @@ def estimated_components(runs: Sequence[Poses]) -> list[int]:
 
 
 def _kept_components(runs: Sequence[Poses], planar: bool | None) -> list[int]:
+    if all(each.shape[-1] == 3 for each in _covariances(runs)):
+        return [0, 1] if planar else [0, 1, 2]
     if planar is not None:
         return _planar if planar else list(range(6))
     kept = estimated_components(runs)
@@ -236,6 +238,8 @@ def pose_arguments(
         for each in (estimate, truth) if pair else (estimate,):
             if each.covariance is None:
                 raise InputError(f"{each.source}: its poses have no covariances. Give a log that has them.")
+            if each.covariance.shape[-1] == 3 and body is not None:
+                raise wrong("body", f"{each.source} has no orientations that turn it", "Leave it out")
         _require_times(estimate, truth)
     ordered = [
         (
