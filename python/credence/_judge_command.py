@@ -20,7 +20,7 @@ from credence._record import Record
 
 _columns = ("error", "estimate", "truth", "sigma", "variance", "covariance", "angles")
 _of_judge = ("margin", "margin-direction", "bias", "failed", "segments", "format", "require")
-_poses = ("manifold", "chart", "max_gap", "align", "body", "time_offset", "planar", "pair")
+_poses = ("manifold", "chart", "max_gap", "align", "body", "time_offset", "planar", "pair", "twist")
 
 
 def _pairs(given: str) -> dict[str, str]:
@@ -60,6 +60,7 @@ def parser() -> argparse.ArgumentParser:
     )  # fmt: skip
     made.add_argument("--manifold", choices=["SE3", "R3 x SO3"], help="what the covariance of a pose is of")
     made.add_argument("--chart", choices=["local", "global"], help="the frame of the error: the body's or the world's")
+    made.add_argument("--twist", action="store_true", default=None, help="of a bag: judge the velocities of Odometry")
     made.add_argument("--max-gap", type=float, metavar="SECONDS", help="between true poses that are interpolated (0.2)")
     made.add_argument(
         "--align", choices=["none", "first", "se3", "yaw", "first-yaw"],
@@ -126,7 +127,7 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
     if "body" in poses:
         poses["body"] = poses["body"].split(",")
     used = {
-        "text": {"truth", "times", "names", "units", *_poses},
+        "text": {"truth", "times", "names", "units", *_poses} - {"twist"},
         "bag": {"truth", "topic", "truth_topic", "units", *_poses},
         "pos": {"truth", "max_gap", "align", "time_offset", "planar", "pair"},
     }

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -54,14 +56,10 @@ def log(steps: int = 300, *, scale: float = 1.0, start: float = 100.0, seed: int
 
 def write_bag(path: Path, of: Log, kind: str, *, truth: str = "tf") -> Path:
     """Writes Odometry and its truth, as TF or PoseStamped, into a bag of the kind ``ros1``, ``sqlite3`` or ``mcap``."""
-    ros1 = kind == "ros1"
-    store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
-    types, sequence = store.types, (0,) if ros1 else ()
+    types = types_of(kind).types
 
     def header(at: float, frame: str) -> Any:
-        sec = int(at)
-        stamp = types["builtin_interfaces/msg/Time"](sec, round((at - sec) * 1e9))
-        return types["std_msgs/msg/Header"](*sequence, stamp, frame)
+        return header_of(kind, at, frame)
 
     def pose(row: Array) -> Any:
         point = types["geometry_msgs/msg/Point"](*row[:3])
@@ -84,6 +82,23 @@ def write_bag(path: Path, of: Log, kind: str, *, truth: str = "tf") -> Path:
     for at, row in zip(of.truth_time, of.truth):
         one = ("/tf", transform(at, row)) if truth == "tf" else ("/gt", stamped(header(at, "map"), pose(row)))
         messages.append((at, *one))
+    return write_messages(path, kind, messages)
+
+
+def header_of(kind: str, at: float, frame: str) -> Any:
+    types, sec = types_of(kind).types, int(at)
+    stamp = types["builtin_interfaces/msg/Time"](sec, round((at - sec) * 1e9))
+    return types["std_msgs/msg/Header"](*([0] if kind == "ros1" else []), stamp, frame)
+
+
+@cache
+def types_of(kind: str) -> Any:
+    return get_typestore(Stores.ROS1_NOETIC if kind == "ros1" else Stores.ROS2_HUMBLE)
+
+
+def write_messages(path: Path, kind: str, messages: Sequence[tuple[float, str, Any]]) -> Path:
+    """Writes messages of `types_of` the kind at their times (s) and topics."""
+    store, ros1 = types_of(kind), kind == "ros1"
     serialize = store.serialize_ros1 if ros1 else store.serialize_cdr
     writer: Any = Writer1(path)
     if not ros1:

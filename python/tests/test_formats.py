@@ -10,6 +10,7 @@ import pandas as pd
 import pymap3d
 import pytest
 from conftest import refused
+from logs import header_of, types_of, write_messages
 from test_logs import judged
 
 from credence import adapters
@@ -126,3 +127,82 @@ class TestRtklib:
         refused("invalid body .*no orientations", adapters.from_rtklib, llh, llh, body=[1, 2, 3])
         (tmp_path / "bare.pos").write_text("2025/03/04 00:00:00 1 2 3\n")
         refused("bare.pos: no line of it names its columns", adapters.from_rtklib, tmp_path / "bare.pos", llh)
+
+
+class TestBags:
+    """Fixes of satellites, and velocities of Odometry."""
+
+    @staticmethod
+    def fix(at: float, place: Array, kind: int, status: int = 0, here: Any = TestRtklib.HERE) -> Any:
+        types = types_of("sqlite3").types
+        lat, lon, height = np.ravel(pymap3d.enu2geodetic(*place, *here))
+        state = types["sensor_msgs/msg/NavSatStatus"](status, 1)
+        return types["sensor_msgs/msg/NavSatFix"](
+            header_of("sqlite3", at, "gps"), state, lat, lon, height, P.ravel(), kind
+        )
+
+    def bag(self, path: Path, kind: int = 3) -> tuple[Path, Array]:
+        """Every tenth message has no fix."""
+        way, error = TestRtklib.path()
+        messages = [
+            (1.0 + k, "/fix", self.fix(1.0 + k, row, kind, -(k % 10 == 9))) for k, row in enumerate(way + error)
+        ]
+        messages += [(1.0 + k, "/gt", self.fix(1.0 + k, row, 0)) for k, row in enumerate(way)]
+        return write_messages(path, "sqlite3", sorted(messages, key=lambda one: one[0])), error
+
+    def test_fixes_are_judged_in_east_north_and_up(self, tmp_path: Path) -> None:
+        bag, error = self.bag(tmp_path / "run")
+        with pytest.warns(UserWarning, match="20 of 200 messages have no fix, and are left out"):
+            arguments = adapters.from_rosbag(bag, topic="/fix")
+        left = error[np.arange(200) % 10 != 9]
+        assert arguments["component_names"] == ["east", "north", "up"]
+        np.testing.assert_allclose((arguments["estimate"] - arguments["truth"])[0], left, atol=2e-4)
+        assert judged(arguments) == pytest.approx(expected_nees(left), rel=0.01)
+        still = [(1.0 + k, "/fix", self.fix(1.0 + k, row, 2)) for k, row in enumerate(error)]
+        with pytest.warns(UserWarning, match=r"no correlations \(types \{2\}\)"):
+            point = adapters.from_rosbag(write_messages(tmp_path / "still", "sqlite3", still), TestRtklib.HERE)
+        np.testing.assert_allclose((point["estimate"] - point["truth"])[0], error, atol=1e-4)
+
+    @pytest.mark.filterwarnings("ignore:.*no fix")
+    def test_fixes_without_covariances_are_refused(self, tmp_path: Path) -> None:
+        bag, _ = self.bag(tmp_path / "run", kind=0)
+        refused("position_covariance_type is 0, unknown", adapters.from_rosbag, bag, topic="/fix", truth_topic="/gt")
+        refused("several topics have poses with cov.* /fix, /gt", adapters.from_rosbag, bag)
+
+    def test_velocities(self, tmp_path: Path) -> None:
+        types, rng = types_of("ros1").types, np.random.default_rng(4)
+        vector = types["geometry_msgs/msg/Vector3"]
+
+        def odometry(at: float, v: float, w: float, Q: Array) -> Any:
+            twist = types["geometry_msgs/msg/Twist"](vector(v, 0.0, 0.0), vector(0.0, 0.0, w))
+            with_covariance = types["geometry_msgs/msg/TwistWithCovariance"](twist, Q.ravel())
+            point, turn = (
+                types["geometry_msgs/msg/Point"](0.0, 0.0, 0.0),
+                types["geometry_msgs/msg/Quaternion"](0.0, 0.0, 0.0, 1.0),
+            )
+            pose = types["geometry_msgs/msg/PoseWithCovariance"](
+                types["geometry_msgs/msg/Pose"](point, turn), np.zeros(36)
+            )
+            return types["nav_msgs/msg/Odometry"](header_of("ros1", at, "odom"), "base", pose, with_covariance)
+
+        Q = np.zeros((6, 6))
+        Q[np.ix_([0, 5], [0, 5])] = R = np.array([[0.04, 0.01], [0.01, 0.09]])
+        error = rng.multivariate_normal(np.zeros(2), R, 100)
+        times = 5 + 0.1 * np.arange(100)
+        messages = [(t, "/odom", odometry(t, 2 * t + a, 3 - t + b, Q)) for t, (a, b) in zip(times, error)]
+        messages += [(t, "/gt", odometry(t, 2 * t, 3 - t, 0 * Q)) for t in np.arange(4.95, 16, 0.1)]
+        bag = write_messages(tmp_path / "run.bag", "ros1", messages)
+        with pytest.warns(UserWarning, match="vy, vz, wx, wy: not estimated, and left out"):
+            arguments = adapters.from_rosbag(bag, topic="/odom", truth_topic="/gt", twist=True)
+        assert (arguments["component_names"], arguments["component_units"]) == (["vx", "wz"], ["m/s", "rad/s"])
+        np.testing.assert_allclose(arguments["error"][0], error, atol=1e-9)
+        np.testing.assert_allclose(arguments["covariance"][0, 3], R)
+        how: Any = {"topic": "/odom", "truth_topic": "/gt", "twist": True}
+        refused("invalid align .says nothing about velocities", adapters.from_rosbag, bag, **how, align="yaw")
+        refused(
+            "there is no topic /a of velocities in it. Give one of /gt, /odom",
+            adapters.from_rosbag,
+            bag,
+            topic="/a",
+            twist=True,
+        )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from typing import Any
 
@@ -54,6 +55,21 @@ def _about_first(estimate: Poses, truth: Poses) -> tuple[Poses, Poses]:
         return fixes(poses.source, poses.time, (poses.pose[:, :3] - here) @ A.T, covariance, "")
 
     return local(estimate), local(truth)
+
+
+def standing(estimate: Poses, point: Any, time_offset: float = 0.0) -> Poses | None:
+    """The truth of a receiver that stands still: three numbers, also as a text; None where they are a path."""
+    given = point[0] if isinstance(point, (list, tuple)) and len(point) == 1 else point
+    numbers = given.split(",") if isinstance(given, str) and not os.path.exists(given) else given
+    try:
+        place = np.array([[float(one) for one in numbers]])
+    except (TypeError, ValueError):
+        return None
+    if place.shape != (1, 3):
+        return None
+    place = positions(*place.T) if estimate.frame == EARTH else place
+    times = estimate.time + time_offset
+    return fixes("the point", times, np.tile(place, (len(times), 1)), None, estimate.frame)
 
 
 def fix_arguments(pairs: Sequence[tuple[Poses, Poses]], **options: Any) -> dict[str, Any]:

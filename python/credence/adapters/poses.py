@@ -45,25 +45,28 @@ def _finite(poses: Poses) -> NDArray[np.bool_]:
     return there
 
 
-def _require_poses(poses: Poses) -> Poses:
+def _require_turns(poses: Poses) -> Poses:
+    if poses.pose.shape[1] == 7:
+        require_unit(poses.source, poses.pose[:, 3:])
+    return poses
+
+
+def require_poses(poses: Poses) -> Poses:
     there = _finite(poses)
     if not there.all():
         has = f"pose {np.argmin(there) + 1} of {len(there)}, the first of {(~there).sum()}, is not finite"
         raise InputError(f"{poses.source}: {has}. Leave out what was written before the filter had a pose.")
-    require_unit(poses.source, poses.pose[:, 3:])
-    return poses
+    return _require_turns(poses)
 
 
-def _without_gaps(truth: Poses) -> Poses:
+def without_gaps(truth: Poses) -> Poses:
     """The truth where there is one."""
     there = _finite(truth)
     if not there.any():
         raise InputError(f"{truth.source}: none of its poses is finite. Give the truth of this run.")
     if not there.all():
         note(f"{truth.source}: {(~there).sum()} of {len(there)} true poses are not finite, and are left out")
-    truth = truth.at(np.flatnonzero(there))
-    require_unit(truth.source, truth.pose[:, 3:])
-    return truth
+    return _require_turns(truth.at(np.flatnonzero(there)))
 
 
 def in_order(poses: Poses) -> Poses:
@@ -78,12 +81,11 @@ def in_order(poses: Poses) -> Poses:
 def interpolated(truth: Poses, times: Array, max_gap: float) -> tuple[NDArray[np.intp], Poses]:
     """Indices of the times that have a truth, and the poses there: positions on straight lines between two true poses
     that are at most `max_gap` (s) apart, orientations on geodesics of SO(3) [Shoemake 1985], and covariances between
-    those of the two."""
+    those of the two; velocities, which have no orientations, on straight lines."""
     found, before, after, place = neighbours(truth.time, times, max_gap)
     share, one, other = place[:, None], truth.pose[before], truth.pose[after]
-    poses, covariance = np.where(share == 1, other, one), truth.covariance
-    if ((share > 0) & (share < 1)).any():
-        poses[:, :3] = (1 - share) * one[:, :3] + share * other[:, :3]
+    poses, covariance = (1 - share) * one + share * other, truth.covariance
+    if poses.shape[1] == 7 and ((share > 0) & (share < 1)).any():
         first = rotation(one[:, 3:])
         turn = (first.inv() * rotation(other[:, 3:])).as_rotvec()
         poses[:, 3:] = (first * from_vectors(share * turn)).as_quat()
@@ -99,6 +101,14 @@ def _associated(estimate: Poses, truth: Poses, max_gap: float, time_offset: floa
     return estimate.at(found), at
 
 
+def placeholders(covariances: Sequence[Array]) -> NDArray[np.bool_]:
+    """[n]: whether a component's variance stands for none throughout."""
+    variances = np.concatenate([np.diagonal(each, axis1=1, axis2=2) for each in covariances])
+    one_large = (variances >= 1e4).all(axis=0) & (np.ptp(variances, axis=0) == 0)
+    none: NDArray[np.bool_] = np.logical_or(~((variances > 0) & (variances < 1e6)).any(axis=0), one_large)
+    return none
+
+
 def estimated_components(runs: Sequence[Poses]) -> list[int]:
     """Indices of (x, y, z, roll, pitch, yaw) that a log estimates.
 
@@ -106,9 +116,7 @@ def estimated_components(runs: Sequence[Poses]) -> list[int]:
     one and the same number from 10^4 on); nor are z, roll and pitch where twenty poses or more do not change them.
     """
     poses = np.concatenate([run.pose for run in runs])
-    variances = np.concatenate([np.diagonal(each, axis1=1, axis2=2) for each in _covariances(runs)])
-    none = ~((variances > 0) & (variances < 1e6)).any(axis=0)
-    none |= (variances >= 1e4).all(axis=0) & (np.ptp(variances, axis=0) == 0)
+    none = placeholders(_covariances(runs))
     if len(poses) >= 20:  # of fewer poses none may have left the plane yet
         x, y, z, w = poses[:, 3:].T
         up = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x)])  # the body's z axis: where roll and pitch show
@@ -202,7 +210,7 @@ def _of_turns(poses: Poses, manifold: str, chart: str) -> Poses:
     return poses._replace(covariance=tangent(poses.pose, poses.covariance, manifold, chart))
 
 
-def _added(estimate: Poses, truth: Poses) -> Poses:
+def added(estimate: Poses, truth: Poses) -> Poses:
     """The estimate with the covariance of its difference from that of another filter."""
     assert estimate.covariance is not None
     assert truth.covariance is not None
@@ -243,8 +251,8 @@ def pose_arguments(
         _require_times(estimate, truth)
     ordered = [
         (
-            _of_turns(in_order(_require_poses(estimate)), manifold, chart),
-            with_body(_of_turns(in_order(_without_gaps(truth)), manifold, chart), offset),
+            _of_turns(in_order(require_poses(estimate)), manifold, chart),
+            with_body(_of_turns(in_order(without_gaps(truth)), manifold, chart), offset),
         )
         for estimate, truth in pairs
     ]
@@ -252,7 +260,7 @@ def pose_arguments(
     turned = () if manifold == "SE3" else (0,) if chart == "local" else (0, 3)
     runs = [_one_gauge(*run, align, turned if pair else ()) for run in runs]
     if pair:
-        runs = [(_added(*run), run[1]) for run in runs]
+        runs = [(added(*run), run[1]) for run in runs]
         say_independent(runs[0][0].source, runs[0][1].source)
     kept = _kept_components([estimate for estimate, _ in runs], planar)
     for (estimate, truth), (_, whole) in zip(runs, ordered):

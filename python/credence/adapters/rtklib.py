@@ -10,7 +10,7 @@ import numpy as np
 
 from credence._errors import InputError, argument
 from credence.adapters.frames import Poses
-from credence.adapters.geodesy import axes, fix_arguments, fixes, positions
+from credence.adapters.geodesy import axes, fix_arguments, fixes, positions, standing
 from credence.adapters.tables import Array, Path, needed, note, one_line, paired, text_of
 
 _places = {"latitude(deg)": "enu", "latitude(d'\")": "enu", "x-ecef(m)": "xyz", "e-baseline(m)": "enu"}
@@ -77,15 +77,6 @@ def read_pos(path: Path) -> tuple[Poses, str]:
     return fixes(source, times, positions(*values[:, :3].T), covariance), system
 
 
-def _point(truth: Any) -> list[float] | None:
-    """Three numbers that are no path."""
-    numbers = truth.split(",") if isinstance(truth, str) and not os.path.exists(truth) else truth
-    try:
-        return [float(one) for one in numbers] if len(numbers) == 3 else None
-    except (TypeError, ValueError):
-        return None
-
-
 def from_rtklib(
     estimate: Path | Sequence[Path], truth: Path | Sequence[Path] | Sequence[float], **options: Any
 ) -> dict[str, Any]:
@@ -116,23 +107,13 @@ def from_rtklib(
         If a file has no header or no covariances, the truth is in another frame or in another system of times, or as of
         :func:`from_tum`.
     """
-    single = truth[0] if isinstance(truth, (list, tuple)) and len(truth) == 1 else truth
-    point = _point(single)
-    if point is None:
-        files: Any = paired(estimate, truth)  # type: ignore[arg-type]
-    else:
-        files = [(one, None) for one, _ in paired(estimate, estimate)]
-    pairs = []
-    for one, other in files:
-        read, system = read_pos(one)
-        if other is None and point is not None:
-            place = np.array([point]) if read.frame == _base else positions(*np.array(point)[:, None])
-            times = read.time + options.get("time_offset", 0.0)
-            pairs.append((read, fixes("the point", times, np.tile(place, (len(times), 1)), None, read.frame)))
-            continue
+    read = [read_pos(one) for one, _ in paired(estimate, estimate)]
+    still = [standing(each, truth, options.get("time_offset", 0.0)) for each, _ in read]
+    pairs = [(each, point) for (each, _), point in zip(read, still) if point is not None]
+    for (each, system), (_, other) in zip(read, [] if pairs else paired(estimate, truth)):  # type: ignore[arg-type]
         true, of_truth = read_pos(other)
         if (system == "GPST") != (of_truth == "GPST") and not options.get("time_offset"):
             has = f"its times are {system}, those of {true.source} {of_truth}"
-            raise InputError(f"{read.source}: {has}. Give {argument('time_offset')}, the leap seconds between them.")
-        pairs.append((read, true))
+            raise InputError(f"{each.source}: {has}. Give {argument('time_offset')}, the leap seconds between them.")
+        pairs.append((each, true))
     return fix_arguments(pairs, **options)
