@@ -45,7 +45,10 @@ def parser() -> argparse.ArgumentParser:
         help="its ground truth; or once for each log; of .pos also a point: LATITUDE,LONGITUDE,HEIGHT",
     )  # fmt: skip
     made.add_argument("--topic", help="of a bag: its poses with covariances")
-    made.add_argument("--truth-topic", metavar="TOPIC", help="of a bag: its truth, such as /gt or /tf:PARENT.CHILD")
+    made.add_argument(
+        "--truth-topic", metavar="TOPIC",
+        help="of a bag: its truth, such as /gt or /tf:PARENT.CHILD; of a .ulg groundtruth, that of its simulator",
+    )  # fmt: skip
     made.add_argument("--times", metavar="FILE", help="of KITTI: the times of the poses")
     made.add_argument("--rows", metavar="NAME,…", help="of .ulg: fields, such as gps_hpos,baro_vpos")
     made.add_argument(
@@ -131,7 +134,8 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
         "bag": {"truth", "topic", "truth_topic", "units", *_poses},
         "pos": {"truth", "max_gap", "align", "time_offset", "planar", "pair"},
     }
-    allowed = used.get(kind or "", {"rows"} if kind == "ulg" else {"names"})
+    used["ulg"] = {"truth_topic", *_poses} - {"twist", "pair"} if given.truth_topic else {"rows"}
+    allowed = used.get(kind or "", {"names"})
     for option in ("truth", "topic", "truth_topic", "times", "rows", "names", "units", *_poses):
         if getattr(given, option) not in (None, [], {}) and option not in allowed:
             raise InputError(f"{argument(option)}: says nothing about a log of this kind. Leave it out.")
@@ -142,6 +146,10 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
         raise InputError("poses need a truth. Give --truth FILE; or the columns of a table that has both (--names).")
     if kind == "pos":
         return adapters.from_rtklib(given.log, given.truth, **poses)
+    if kind == "ulg" and given.truth_topic:
+        if given.truth_topic != "groundtruth":
+            raise invalid("truth_topic", given.truth_topic, "a .ulg has that of its simulator", "Give groundtruth")
+        return adapters.from_px4(given.log, **poses)
     if kind != "text" and not isinstance(single, str):
         raise InputError(f"a verdict is on one .{kind} at a time, which has all runs in it. Give one.")
     if kind == "ulg":

@@ -10,8 +10,9 @@ import pandas as pd
 import pymap3d
 import pytest
 from conftest import refused
-from logs import header_of, types_of, write_messages
-from test_logs import judged
+from logs import header_of, log, truth_at, types_of, write_messages
+from scipy.spatial.transform import Rotation
+from test_logs import judged, ulog_bytes
 
 from credence import adapters
 from credence._judge_command import main as judge_command
@@ -206,3 +207,63 @@ class TestBags:
             topic="/a",
             twist=True,
         )
+
+
+class TestPx4:
+    """A flight whose truth has another origin, as a simulator and the estimator have it."""
+
+    @pytest.mark.parametrize("kind", ["now", "before 1.14", "states", "states before 1.15"])
+    def test_the_truth_of_a_simulation(self, tmp_path: Path, kind: str, capfd: pytest.CaptureFixture[str]) -> None:
+        of = log(300, start=0)  # with errors of turns in the world's frame
+        true = truth_at(of.time)
+        turn, q = Rotation.from_quat(true[:, 3:]), [6, 3, 4, 5]
+        error = np.hstack([of.pose[:, :3] - true[:, :3], (Rotation.from_quat(of.pose[:, 3:]) * turn.inv()).as_rotvec()])
+        P, variances, pose = of.covariance[0], np.diagonal(of.covariance[0]), of.pose.copy()
+        if kind == "now":  # turns in the body's frame
+            pose[:, 3:] = (turn * Rotation.from_rotvec(error[:, 3:])).as_quat()
+        fields, behind = {
+            "now": (["[3] position", "[4] q", "[3] position_variance", "[3] orientation_variance"], variances),
+            "before 1.14": ([" x", " y", " z", "[4] q", "[21] pose_covariance"], P[np.triu_indices(6)]),
+            "states": (["[11] states", "[10] covariances"], [*variances[3:], 0, 0, 0, *variances[:3], 0]),
+            "states before 1.15": (["[10] states", "[10] covariances"], [*[1e-4] * 4, 0, 0, 0, *variances[:3]]),
+        }[kind]  # fmt: skip
+        own = pose[:, [0, 1, 2, *q]]
+        if "states" in kind:
+            own = np.hstack([pose[:, q], np.zeros((300, 3)), pose[:, :3], np.zeros((300, int(kind == "states")))])
+        if kind != "before 1.14":
+            P = np.diag(variances if kind != "states before 1.15" else [*variances[:3], *[4e-4] * 3])
+        here, there = [47.4, 8.5, 488.0], np.ravel(pymap3d.ned2geodetic(30, -20, 5, 47.4, 8.5, 488.0))
+        refs, at, at_truth = (
+            [" x", " y", " z", "= ref_lat", "= ref_lon", " ref_alt"],
+            1e6 * of.time,
+            1e6 * of.truth_time,
+        )
+        rows = np.vstack([np.full((3, own.shape[1]), np.nan), own])
+        odometry = np.c_[np.r_[[1.0, 2, 3], at], rows, np.tile(behind, (303, 1))]
+        places = np.c_[at_truth, of.truth[:, :3] - [30, -20, 5], np.tile(there, (len(at_truth), 1))]
+        topics = {
+            "estimator_states" if "states" in kind else "vehicle_odometry": (fields, odometry),
+            "vehicle_local_position": (refs, np.c_[at, pose[:, :3], np.tile(here, (300, 1))]),
+            "vehicle_local_position_groundtruth": (refs, places),
+            "vehicle_attitude_groundtruth": (["[4] q"], np.c_[at_truth + 2000, truth_at(of.truth_time + 0.002)[:, q]]),
+        }
+        path = tmp_path / "flight.ulg"
+        path.write_bytes(ulog_bytes(topics))
+        with (
+            pytest.warns(UserWarning, match="3 messages before the first pose are left out"),
+            pytest.warns(UserWarning, match="the origin of its truth is moved by 36.4 m, to that of the estimate"),
+        ):
+            arguments = adapters.from_px4(path)
+        assert arguments["chart"] == ("local" if kind == "now" else "global")
+        found = arguments["covariance"][0]
+        assert found.shape == ((300, 6, 6) if kind == "before 1.14" else (300, 6))
+        np.testing.assert_allclose(found[7], P if found.ndim == 3 else np.diagonal(P), rtol=1e-5)
+        whole = {**arguments, "covariance": np.tile(P, (1, 300, 1, 1))}
+        assert judged(whole) == pytest.approx(expected_nees(error, P), rel=0.05)  # of singles: 1e-6 m in 30 m
+        assert judge_command([str(path), "--truth-topic=groundtruth"]) == 0
+        assert "one log of 300 steps" in capfd.readouterr().out
+
+    def test_refusals(self, tmp_path: Path) -> None:
+        (tmp_path / "a.ulg").write_bytes(ulog_bytes({"vehicle_odometry": ([" x"], np.ones((3, 2)))}))
+        refused("a.ulg: it has not all of vehicle_local_position_groundtruth", adapters.from_px4, tmp_path / "a.ulg")
+        assert judge_command([str(tmp_path / "a.ulg"), "--truth-topic=/gt"]) == 2

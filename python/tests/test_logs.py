@@ -243,21 +243,22 @@ class TestBags:
 
 
 def ulog_bytes(topics: dict[str, tuple[list[str], Array]]) -> bytes:
-    """A log in PX4's format, whose topics have a row a time (µs) and fields of singles."""
+    """A log in PX4's format, whose topics have a row a time (µs) and fields of singles, or, with an `=`, doubles."""
 
     def message(kind: bytes, body: bytes) -> bytes:
         return struct.pack("<H", len(body)) + kind + body
 
     parts = [b"ULog\x01\x12\x35\x01" + struct.pack("<Q", 0), message(b"B", bytes(40))]
     for name, (fields, _) in topics.items():
-        parts.append(
-            message(b"F", (f"{name}:uint64_t timestamp;" + "".join(f"float{one};" for one in fields)).encode())
-        )
+        typed = "".join(f"float{one};" for one in fields).replace("float=", "double")
+        parts.append(message(b"F", f"{name}:uint64_t timestamp;{typed}".encode()))
     for number, name in enumerate(topics):
         parts.append(message(b"A", struct.pack("<BH", 0, number) + name.encode()))
-    for number, (_, rows) in enumerate(topics.values()):
+    for number, (fields, rows) in enumerate(topics.values()):
+        counts = [int(one.partition("]")[0].lstrip("=[") or 1) if "[" in one else 1 for one in fields]
+        codes = "".join(f"{count}{'d' if one[0] == '=' else 'f'}" for count, one in zip(counts, fields))
         for time, *values in rows.tolist():
-            parts.append(message(b"D", struct.pack(f"<HQ{len(values)}f", number, int(time), *values)))
+            parts.append(message(b"D", struct.pack(f"<HQ{codes}", number, int(time), *values)))
     return b"".join(parts)
 
 

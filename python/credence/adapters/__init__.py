@@ -17,7 +17,7 @@ from credence.adapters.quaternions import from_quaternions
 from credence.adapters.rosbag import from_rosbag
 from credence.adapters.rtklib import from_rtklib
 from credence.adapters.trajectories import from_euroc, from_kitti, from_openvins, from_tum
-from credence.adapters.ulog import from_ulog
+from credence.adapters.ulog import from_px4, from_ulog
 
 __all__ = [
     "from_euroc",
@@ -28,6 +28,7 @@ __all__ = [
     "from_npz",
     "from_openvins",
     "from_pair",
+    "from_px4",
     "from_quaternions",
     "from_rosbag",
     "from_rtklib",

@@ -9,10 +9,21 @@ from typing import Any
 import numpy as np
 
 from credence import InputError
-from credence.adapters.tables import Array, Path, existing, needed, note, one_line
+from credence.adapters.frames import Poses
+from credence.adapters.poses import in_order, interpolated, pose_arguments, without_gaps
+from credence.adapters.tables import Array, Path, existing, from_upper, needed, note, one_line, paired
 
 _innovations, _variances, _both = "estimator_innovations", "estimator_innovation_variances", "ekf2_innovations"
 _time = "timestamp"
+
+
+def _log(path: Path) -> tuple[Any, str]:
+    pyulog = needed("pyulog", "pyulog", "read .ulg")
+    source = existing(path)
+    try:
+        return pyulog.ULog(source), source
+    except Exception as error:  # pyulog raises what its parser runs into
+        raise InputError(f"{source}: it cannot be read as a log of PX4 ({one_line(error)}). Check the path.") from None
 
 
 def _series(log: Any, source: str, instance: int) -> tuple[dict[str, Array], dict[str, Array]]:
@@ -70,12 +81,7 @@ def from_ulog(path: Path, rows: Sequence[str] | None = None, *, instance: int = 
     InputError
         If the log has no innovations, none of these rows, or no time at which all of them were observed.
     """
-    pyulog = needed("pyulog", "pyulog", "read .ulg")
-    source = existing(path)
-    try:
-        log = pyulog.ULog(source)
-    except Exception as error:  # pyulog raises what its parser runs into
-        raise InputError(f"{source}: it cannot be read as a log of PX4 ({one_line(error)}). Check the path.") from None
+    log, source = _log(path)
     innovations, variances = _series(log, source, instance)
     chosen = {}
     for name, variance in variances.items():
@@ -102,6 +108,112 @@ def from_ulog(path: Path, rows: Sequence[str] | None = None, *, instance: int = 
         "groups": {field: [i for i, of in enumerate(fields) if of == field] for field in dict.fromkeys(fields)},
         "component_names": [name.replace("[", "_").replace("]", "") for name in chosen],
     }
+
+
+def from_px4(path: Path | Sequence[Path], *, max_gap: float = 0.2, **options: Any) -> dict[str, Any]:
+    """Poses of PX4's estimator in logs of simulations (``.ulg``), against the truth that the simulator publishes.
+
+    Needs `pyulog`. Takes ``vehicle_odometry`` or else ``estimator_states``: positions north, east and down, and
+    orientations with their variances, of turns about the axes of the body or, in the states, of the Earth; of logs
+    before 1.14 the covariances of the odometry, and of the states the variances of the quaternion. The truth is
+    ``vehicle_local_position_groundtruth`` and ``vehicle_attitude_groundtruth``, moved to the estimator's origin where
+    both are in the log (pymap3d).
+
+    Parameters
+    ----------
+    path : path, or list of paths
+        A log for each run.
+    max_gap, **options
+        As of :func:`from_tum`.
+
+    Returns
+    -------
+    dict
+        As of :func:`from_tum`, on ``R3 x SO3``; variances `covariance` [trial, step, 6] where the log has no others, so
+        that the verdict is never `consistent`.
+
+    Raises
+    ------
+    InputError
+        If a log has no estimate with variances, or no truth; or as of :func:`from_tum`.
+    """
+    pairs, kinds = [], set()
+    for one, _ in paired(path, path):
+        log, source = _log(one)
+        data = {topic.name: topic.data for topic in reversed(log.data_list)}
+        places, turns = (data.get(f"vehicle_{what}_groundtruth") for what in ("local_position", "attitude"))
+        odometry = data.get("vehicle_odometry", data.get("estimator_states"))
+        if odometry is None or places is None or turns is None:
+            wanted = "vehicle_local_position_groundtruth, vehicle_attitude_groundtruth, and vehicle_odometry"
+            raise InputError(f"{source}: it has not all of {wanted} or estimator_states. Give the log of a simulation.")
+        estimate, *kind = _estimated(source, odometry)
+        kinds.add(tuple(kind))
+        first = int(np.argmax(np.isfinite(estimate.pose).all(axis=1)))
+        if first:
+            note(f"{source}: {first} messages before the first pose are left out")
+            estimate = estimate.at(np.arange(first, len(estimate.time)))
+        still = np.tile([0.0, 0, 0, 1], (len(places["x"]), 1))
+        truth = Poses(f"{source} groundtruth", _seconds(places), np.hstack([_columns(places, *"xyz"), still]))
+        truth.pose[:, :3] += _origin(source, places, data.get("vehicle_local_position"))
+        found, at = interpolated(in_order(without_gaps(truth)), _seconds(turns), max_gap)
+        pairs.append((estimate, at._replace(pose=np.hstack([at.pose[:, :3], _turns(turns)[found]]))))
+    (chart, alone), *others = kinds
+    if others:
+        raise InputError("logs have covariances of several kinds. Give those of one version of PX4 together.")
+    arguments = pose_arguments(pairs, **{"manifold": "R3 x SO3", "chart": chart, "max_gap": max_gap, **options})
+    if alone:
+        arguments["covariance"] = np.diagonal(arguments["covariance"], axis1=-2, axis2=-1)
+    return arguments
+
+
+def _estimated(source: str, data: dict[str, Array]) -> tuple[Poses, str, bool]:
+    """The poses of a topic, the chart of their covariances, and whether these are variances alone."""
+
+    def series(name: str, *numbers: int) -> Array:
+        return _columns(data, *(f"{name}[{i}]" for i in numbers))
+
+    chart, alone, q = "global", True, "q"
+    if "states[0]" in data:
+        q, place = "states", series("states", 7, 8, 9)
+        if sum(name.startswith("states") for name in data) == sum(name.startswith("covariances") for name in data):
+            P = series("covariances", 7, 8, 9, 1, 2, 3, 0)[:, :, None] * np.eye(7)
+        else:
+            P = series("covariances", 6, 7, 8, 0, 1, 2)[:, :, None] * np.eye(6)
+    elif "position_variance[0]" in data:
+        chart, place = "local", series("position", 0, 1, 2)
+        variances = [series(f"{of}_variance", 0, 1, 2) for of in ("position", "orientation")]
+        P = np.hstack(variances)[:, :, None] * np.eye(6)
+    else:
+        alone, place, P = False, _columns(data, *"xyz"), from_upper(series("pose_covariance", *range(21)), 6)
+    return Poses(source, _seconds(data), np.hstack([place, series(q, 1, 2, 3, 0)]), P), chart, alone
+
+
+def _columns(data: dict[str, Array], *names: str) -> Array:
+    return np.stack([data[name].astype(float) for name in names], axis=-1)
+
+
+def _turns(data: dict[str, Array]) -> Array:
+    return _columns(data, *(f"q[{i}]" for i in (1, 2, 3, 0)))
+
+
+def _seconds(data: dict[str, Array]) -> Array:
+    sampled = data.get("timestamp_sample", data[_time])
+    return np.asarray(sampled if (sampled > 0).all() else data[_time]) * 1e-6
+
+
+def _origin(source: str, truth: dict[str, Array], estimate: dict[str, Array] | None) -> Array:
+    """What is added to north, east and down from the origin of the truth for those from that of the estimate (m)."""
+    names = ("ref_lat", "ref_lon", "ref_alt")
+    if estimate is None or any(name not in data for data in (truth, estimate) for name in names):
+        return np.zeros(3)
+    theirs, ours = (_columns(data, *names)[-1] for data in (truth, estimate))
+    if theirs[2] == 0 or ours[2] == 0:  # simulators may leave it out
+        theirs[2] = ours[2]
+    if not np.isfinite([theirs, ours]).all() or (theirs == ours).all() or not (theirs[:2].any() and ours[:2].any()):
+        return np.zeros(3)
+    away = np.ravel(needed("pymap3d", "pymap3d", "move the truth to the origin").geodetic2ned(*theirs, *ours))
+    note(f"{source}: the origin of its truth is moved by {np.linalg.norm(away):.3g} m, to that of the estimate")
+    return away
 
 
 def _field(name: str) -> str:
