@@ -35,7 +35,7 @@ def parser() -> argparse.ArgumentParser:
         prog="python -m credence judge",
         description="The verdict on a filter from its log, whose suffix says what it is: poses with covariances (TUM "
         ".txt, EuRoC .csv, KITTI), a table (.csv with names), a bag (.bag, .mcap, .db3, a folder of ROS 2), .mat, "
-        ".npz, .ulg, RTKLIB's .pos. Records (.h5) are read by `credence judge`, whose options are taken here, too.",
+        ".npz, .ulg, RTKLIB's .pos, .oem. Records (.h5) are read by `credence judge`, whose options are taken, too.",
         epilog="Exit codes: 0 done, 1 what --require asks for does not hold, 2 bad input.",
         allow_abbrev=False,
     )
@@ -98,7 +98,7 @@ def _kind(word: str) -> str | None:
     suffix = Path(word).suffix.lower()
     if is_bag(word):
         return "bag"
-    if suffix in (".ulg", ".mat", ".npz", ".pos"):
+    if suffix in (".ulg", ".mat", ".npz", ".pos", ".oem"):
         return suffix[1:]
     return "text" if suffix in (".csv", ".txt", ".tum", ".kitti") else None
 
@@ -132,6 +132,7 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
     used = {
         "text": {"truth", "times", "names", "units", *_poses} - {"twist"},
         "bag": {"truth", "topic", "truth_topic", "units", *_poses},
+        "oem": {"truth"},
         "pos": {"truth", "max_gap", "align", "time_offset", "planar", "pair"},
     }
     used["ulg"] = {"truth_topic", *_poses} - {"twist", "pair"} if given.truth_topic else {"rows"}
@@ -142,8 +143,10 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
     if kind == "bag":
         topics = {"topic": given.topic, "truth_topic": given.truth_topic}
         return adapters.from_rosbag(given.log, given.truth, **topics, units=given.units, **poses)
-    if kind in ("text", "pos") and not names and given.truth is None:
+    if kind in ("text", "pos", "oem") and not names and given.truth is None:
         raise InputError("poses need a truth. Give --truth FILE; or the columns of a table that has both (--names).")
+    if kind == "oem":
+        return adapters.from_oem(given.log, given.truth)
     if kind == "pos":
         return adapters.from_rtklib(given.log, given.truth, **poses)
     if kind == "ulg" and given.truth_topic:

@@ -267,3 +267,71 @@ class TestPx4:
         (tmp_path / "a.ulg").write_bytes(ulog_bytes({"vehicle_odometry": ([" x"], np.ones((3, 2)))}))
         refused("a.ulg: it has not all of vehicle_local_position_groundtruth", adapters.from_px4, tmp_path / "a.ulg")
         assert judge_command([str(tmp_path / "a.ulg"), "--truth-topic=/gt"]) == 2
+
+
+class TestOem:
+    """The covariance that CCSDS 502.0-B-3 prints in its figure of an OEM, in each of its frames."""
+
+    LOWER = (
+        "3.3313494e-04\n4.6189273e-04 6.7824216e-04\n-3.0700078e-04 -4.2212341e-04 3.2319319e-04\n"
+        "-3.3493650e-07 -4.6860842e-07 2.4849495e-07 4.2960228e-10\n"
+        "-2.2118325e-07 -2.8641868e-07 1.7980986e-07 2.6088992e-10 1.7675147e-10\n"
+        "-3.0413460e-07 -4.9894969e-07 3.5403109e-07 1.8692631e-10 1.0088625e-10 6.2244443e-10\n"
+    )
+
+    @classmethod
+    def write(cls, path: Path, states: Array, frames: tuple[str, ...] = (), frame: str = "EME2000") -> Path:
+        head = "CCSDS_OEM_VERS = 2.0\nCREATION_DATE = 1996-11-04T17:22:31\nORIGINATOR = NASA/JPL\nMETA_START\n"
+        head += f"OBJECT_NAME = MARS GLOBAL SURVEYOR\nOBJECT_ID = 1996-062A\nCENTER_NAME = EARTH\nREF_FRAME = {frame}\n"
+        head += "TIME_SYSTEM = UTC\nSTART_TIME = 1996-12-28T21:00:00\nSTOP_TIME = 1996-12-28T21:09:00\nMETA_STOP\n"
+        rows = [f"1996-12-28T21:0{k}:00 " + " ".join(f"{one:.9f}" for one in row) for k, row in enumerate(states)]
+        blocks = [
+            f"EPOCH = 1996-12-28T21:0{k}:{'30' if k == 4 else '00'}\nCOV_REF_FRAME = {one}\n{cls.LOWER}"
+            for k, one in enumerate(frames)
+        ]
+        covariances = ["COVARIANCE_START\n" + "".join(blocks) + "COVARIANCE_STOP"] if frames else []
+        path.write_text("\n".join([head + "\n".join(rows), *covariances]) + "\n")
+        return path
+
+    @staticmethod
+    def orbit(off: Array) -> Array:
+        """[minute, 6] (km, km/s): a circle that is inclined, and an offset."""
+        turn, w = Rotation.from_euler("x", 0.7), np.sqrt(398600.4418 / 7000**3)
+        t = w * 60 * np.arange(10)
+        place, speed = np.c_[np.cos(t), np.sin(t), 0 * t], np.c_[-np.sin(t), np.cos(t), 0 * t]
+        return np.hstack([turn.apply(7000 * place), turn.apply(7000 * w * speed)]) + off
+
+    def test_covariances_are_turned_from_their_frame(self, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+        off = np.array([0.02, -0.01, 0.015, 1e-5, 2e-5, -1e-5])
+        true = self.orbit(np.zeros(6))
+        frames = ("RTN", "TNW", "EME2000", "RSW", "RTN")  # the last between two states
+        files = [self.write(tmp_path / "a.oem", true + off, frames), self.write(tmp_path / "b.oem", true)]
+        arguments = adapters.from_oem(*files)
+        assert arguments["time"][0] == pytest.approx([0, 60, 120, 180, 270])
+        lower = [[float(one) for one in line.split()] for line in self.LOWER.splitlines()]
+        P = np.array([row + [0.0] * (6 - len(row)) for row in lower])
+        P += np.tril(P, -1).T
+        turn, w = Rotation.from_euler("x", 0.7), np.sqrt(398600.4418 / 7000**3)
+        for k, (frame, minute) in enumerate(zip(frames, (0, 1, 2, 3, 4.5))):
+            # Of a circle T is the direction of the velocity, N that of the centre's opposite, up to the offset.
+            R = (turn * Rotation.from_euler("z", w * 60 * minute)).as_matrix().T  # radial, transverse, normal
+            e = np.r_[R @ off[:3], R @ off[3:]]
+            np.testing.assert_allclose(arguments["error"][0, k], 1e3 * e, rtol=1e-4, atol=1e-5)
+            own = {"EME2000": np.eye(3), "TNW": np.stack([R[1], -R[0], R[2]])}.get(frame, R)
+            J = np.kron(np.eye(2), R @ own.T)
+            np.testing.assert_allclose(arguments["covariance"][0, k], 1e6 * J @ P @ J.T, rtol=1e-3, atol=1e-2)
+        assert judge_command([str(files[0]), "--truth", str(files[1])]) == 0
+        assert "one log of 5 steps" in capfd.readouterr().out
+
+    def test_refusals(self, tmp_path: Path) -> None:
+        true = self.orbit(np.zeros(6))
+        one, plain = self.write(tmp_path / "a.oem", true, ("RTN",)), self.write(tmp_path / "b.oem", true)
+        other, axes = (
+            self.write(tmp_path / f"{name}.oem", true, ("ITRF2000",), frame)
+            for name, frame in (("c", "ITRF2000"), ("d", "EME2000"))
+        )
+        refused("b.oem: 0 covariances", adapters.from_oem, plain, one)
+        refused("c.oem: its states are in .'ITRF", adapters.from_oem, one, other)
+        refused("d.oem: its covariances are in ITRF2000", adapters.from_oem, axes, plain)
+        (tmp_path / "e.oem").write_text("no orbit\n")
+        refused("e.oem: it cannot be read as an OEM", adapters.from_oem, tmp_path / "e.oem", plain)

@@ -12,6 +12,7 @@ from __future__ import annotations
 from credence.adapters.arrays import from_mat, from_npz
 from credence.adapters.columns import from_table
 from credence.adapters.objects import from_gtsam_poses, from_navlie, from_stonesoup
+from credence.adapters.oem import from_oem
 from credence.adapters.pair import from_pair
 from credence.adapters.quaternions import from_quaternions
 from credence.adapters.rosbag import from_rosbag
@@ -26,6 +27,7 @@ __all__ = [
     "from_mat",
     "from_navlie",
     "from_npz",
+    "from_oem",
     "from_openvins",
     "from_pair",
     "from_px4",
