@@ -54,7 +54,7 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument(
         "--names", nargs="+", action="extend", default=[], metavar="WHAT=NAME,…",
         help="of a table: columns, such as estimate=x,y,yaw truth=gx,gy,gyaw sigma=sx,sy,sa angles=yaw time=t; "
-        "of .npz and .mat: arrays, such as error=e covariance=P",
+        "of .npz and .mat: arrays, such as error=e covariance=nav.P; of .mat order=C for [step, n], F for [n, step]",
     )  # fmt: skip
     made.add_argument(
         "--units", type=_pairs, default={}, metavar="NAME=UNIT,…",
@@ -100,7 +100,7 @@ def _kind(word: str) -> str | None:
         return "bag"
     if suffix in (".ulg", ".mat", ".npz", ".pos", ".oem"):
         return suffix[1:]
-    return "text" if suffix in (".csv", ".txt", ".tum", ".kitti") else None
+    return "text" if suffix in (".csv", ".txt", ".tum", ".kitti", ".square", ".smfeval") else None
 
 
 def _names(given: Sequence[str]) -> dict[str, list[str]]:
@@ -158,8 +158,11 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
     if kind == "ulg":
         return adapters.from_ulog(single, given.rows and given.rows.split(","))
     if kind in ("mat", "npz"):
-        read = adapters.from_mat if kind == "mat" else adapters.from_npz
-        return read(single, {what: name[0] for what, name in names.items()})
+        arrays = {what: name[0] for what, name in names.items()}
+        if kind == "npz":
+            return adapters.from_npz(single, arrays)
+        order = arrays.pop("order", None)
+        return adapters.from_mat(single, arrays, order=order)
     if names:
         return _of_table(single, given.truth, names, given.units, given.max_gap)
     return trajectories.from_files(given.log, given.truth, given.times, given.units, **poses)

@@ -146,6 +146,61 @@ class TestQuaternions:
         refused(r"shape \(20, 6, 6\) .must be \(20, 7, 7\)", adapters.from_quaternions, **given, quaternion="xyzw")
 
 
+class TestSquare:
+    """Files as SQUARE/0.3 defines them: a header, and the lower triangle behind each pose."""
+
+    LOWER = (slice(None), *np.tril_indices(6))
+
+    def write(self, path: Path, of: Log, **said: str) -> Path:
+        keys = {"FORMAT": "SQUARE/0.3", "REPRESENTATION": "gaussian_se3", "POSE_FRAME": "world", "BODY_FRAME": "imu"}
+        keys |= {"GAUGE": "fixed", "TANGENT_CONVENTION": "right_perturbation", "TANGENT_ORDER": "translation_rotation"}
+        P = of.covariance
+        if said.get("TANGENT_ORDER") == "rotation_translation":
+            P = np.roll(P, 3, axis=(1, 2))
+        header = "\n".join(f"#%{key} {value}" for key, value in {**keys, **said}.items())
+        np.savetxt(path, np.c_[of.time, of.pose, P[self.LOWER]], header=header, comments="")
+        return path
+
+    @pytest.mark.parametrize(
+        ("said", "how"),
+        [({}, {}), ({"TANGENT_CONVENTION": "left_perturbation"}, {"chart": "global"}),
+         ({"TANGENT_ORDER": "rotation_translation"}, {}), ({"GAUGE": "se3"}, {"align": "se3"}),
+         ({"GAUGE": "gravity_yaw"}, {"align": "yaw"})],
+    )  # fmt: skip
+    def test_headers_stand_for_options(self, tmp_path: Path, said: dict[str, str], how: dict[str, str]) -> None:
+        of = log(60)
+        expected = adapters.from_tum(*tum(tmp_path, of), **how)
+        with (
+            pytest.warns(UserWarning, match=f"its gauge is .*: align is {how.get('align', 'none')}, unless"),
+            pytest.warns(UserWarning, match="its poses are of the body imu. Give body if"),
+        ):
+            found = adapters.from_square(self.write(tmp_path / "a.square", of, **said), tmp_path / "truth.txt")
+        assert (found["manifold"], found["chart"]) == ("SE3", how.get("chart", "local"))
+        for name in ("truth", "covariance"):
+            np.testing.assert_allclose(found[name], expected[name], rtol=1e-9, atol=1e-9)
+
+    def test_lines_without_a_header(self, tmp_path: Path) -> None:
+        of = log(60)
+        files = tum(tmp_path, of)
+        wide = write(tmp_path / "wide.txt", np.c_[of.time, of.pose, of.covariance[self.LOWER]])
+        with pytest.warns(UserWarning, match=r"as a lower triangle \(100%; as an upper 0%\)"):
+            found = adapters.from_tum(wide, files[1])
+        np.testing.assert_allclose(found["covariance"], adapters.from_tum(*files)["covariance"], rtol=1e-9)
+        none = write(tmp_path / "none.txt", np.c_[of.time, of.pose, -np.ones((60, 21))])
+        refused("none.txt: none of its 21 numbers behind a pose is a covariance", adapters.from_tum, none, files[1])
+
+    @pytest.mark.filterwarnings("ignore:.*its poses are of the body")
+    def test_refusals(self, tmp_path: Path) -> None:
+        of = log(20)
+        truth = write(tmp_path / "truth.txt", of.truth_rows())
+        for said, message in (
+            ({"GAUGE": "sim3"}, "a gauge of sim3 is not aligned. Give align"),
+            ({"TANGENT_CONVENTION": "x"}, "unknown TANGENT_CONVENTION x"),
+            ({"REPRESENTATION": "ensemble_se3"}, "it is a SQUARE of ensemble_se3, not gaussian_se3"),
+        ):
+            refused(f"a.square: {message}", adapters.from_square, self.write(tmp_path / "a.square", of, **said), truth)
+
+
 class TestPair:
     """Two filters whose errors are independent, each drawn from its own P."""
 

@@ -316,6 +316,21 @@ class TestMat:
         same = credence.judge(error, P, component_names=["x", "vx"], groups="speed 1", time=np.arange(7.0))
         assert credence.judge(**arguments).json == same.json
 
+    def test_fields_of_structs_and_variances(self, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+        rng = np.random.default_rng(4)
+        error, V = rng.normal(size=(60, 3)), np.tile([1.0, 2, 3], (60, 1))
+        scipy.io.savemat(tmp_path / "a.mat", {"nav_e": {"vel": error, "filter": {"P": V}}, "nav": {"vel": 0.0}})
+        names = {"error": "nav_e.vel", "covariance": "nav_e.filter.P"}
+        refused("fit both orders, or none. Give order", adapters.from_mat, tmp_path / "a.mat", names)
+        arguments = adapters.from_mat(tmp_path / "a.mat", names, order="C")
+        np.testing.assert_array_equal(arguments["error"], error)
+        np.testing.assert_array_equal(arguments["covariance"], V)
+        names["error"] = "nav_e.v"
+        refused("no array nav_e.v in it .it has nav_e, nav_e.vel", adapters.from_mat, tmp_path / "a.mat", names)
+        words = ["--names", "error=nav_e.vel", "covariance=nav_e.filter.P", "order=C"]
+        assert judge_command([str(tmp_path / "a.mat"), *words]) == 0
+        assert "one log of 60 steps" in capfd.readouterr().out
+
     def test_refusals(self, tmp_path: Path) -> None:
         scipy.io.savemat(tmp_path / "a.mat", {"error": np.ones((3, 4)), "covariance": np.ones((3, 4))})
         refused(r"fit both orders, or none. Give order", adapters.from_mat, tmp_path / "a.mat")

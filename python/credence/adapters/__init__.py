@@ -17,7 +17,7 @@ from credence.adapters.pair import from_pair
 from credence.adapters.quaternions import from_quaternions
 from credence.adapters.rosbag import from_rosbag
 from credence.adapters.rtklib import from_rtklib
-from credence.adapters.trajectories import from_euroc, from_kitti, from_openvins, from_tum
+from credence.adapters.trajectories import from_euroc, from_kitti, from_openvins, from_square, from_tum
 from credence.adapters.ulog import from_px4, from_ulog
 
 __all__ = [
@@ -34,6 +34,7 @@ __all__ = [
     "from_quaternions",
     "from_rosbag",
     "from_rtklib",
+    "from_square",
     "from_stonesoup",
     "from_table",
     "from_tum",

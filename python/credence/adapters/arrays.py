@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from typing import Any
 
@@ -59,10 +59,10 @@ def from_mat(
     path
         A file that ``save`` of MATLAB or Octave, or ``scipy.io.savemat``, wrote.
     names : dict
-        As of :func:`from_npz`.
+        As of :func:`from_npz`; fields of structs are named with dots: ``{"error": "nav_e.vel"}``.
     order : ``"F"`` or ``"C"``
         ``"F"`` is [n, step, trial] with covariances [n, n, step, trial], as one writes them in MATLAB; ``"C"`` is
-        [trial, step, n]. By default what the shapes of error and covariance say.
+        [trial, step, n]. By default what the shapes of error and covariance say; variances [step, n] do not.
 
     Returns
     -------
@@ -84,7 +84,8 @@ def from_mat(
         raise InputError(f"{source}: cannot be read here ({why}). Give it to credence.judge as a path.") from None
     except Exception as error:  # what its parser runs into
         raise InputError(f"{source}: it cannot be read as a .mat file ({one_line(error)}). Check the path.") from None
-    arguments = _arguments(source, {name: array for name, array in variables.items() if name[:2] != "__"}, names)
+    named = dict(_fields("", {name: array for name, array in variables.items() if name[:2] != "__"}))
+    arguments = _arguments(source, named, names)
     order = order or _order(source, arguments)
     if order not in ("F", "C"):
         raise invalid("order", order, "must be F or C", "Give one of them")
@@ -103,6 +104,15 @@ def from_mat(
         else turned(name, value)
         for name, value in arguments.items()
     }
+
+
+def _fields(before: str, variables: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Variables by their names, those in structs by names with dots."""
+    for name, value in variables.items():
+        yield before + name, value
+        fields = getattr(getattr(value, "dtype", None), "names", None)
+        if fields and value.size == 1:
+            yield from _fields(f"{before}{name}.", {field: value[field].item() for field in fields})
 
 
 def _order(source: str, arguments: Mapping[str, Any]) -> str:

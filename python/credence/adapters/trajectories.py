@@ -11,6 +11,7 @@ import numpy as np
 from credence import InputError
 from credence.adapters.frames import Poses, quaternions
 from credence.adapters.poses import pose_arguments
+from credence.adapters.square import square_header, square_options, triangle
 from credence.adapters.tables import (
     Array,
     Path,
@@ -80,7 +81,7 @@ def read_poses(
             raise InputError(f"{source}: {has} and {either}. Check what kind of file it is.")
         note(f"{source}: {has} and are no matrices of KITTI: the first 8 are taken for TUM's time and pose")
     stamps = seconds(source, table[:, 0], asked or ("ns" if euroc else "s"), name, noted=not asked)
-    covariance = _behind(table, _pose_columns, behind if behind in _covariance_numbers else 0)
+    covariance = _behind(path, table, _pose_columns, behind if behind in _covariance_numbers else 0)
     if euroc and covariance is not None and behind in (49, 28):
         covariance = covariance[:, _w_last][..., _w_last]
     return Poses(source, stamps, pose, covariance)
@@ -103,7 +104,7 @@ def _of_matrices(path: Path, table: Array, wide: int, times: Path | None, asked:
     matrices, there = table[:, :12].reshape(-1, 3, 4), np.isfinite(table[:, :12]).all(axis=1)
     pose = np.hstack([matrices[:, :, 3], np.full((len(table), 4), np.nan)])
     pose[there, 3:] = quaternions(matrices[there, :, :3])
-    covariance = _behind(table, wide, table.shape[1] - wide)
+    covariance = _behind(path, table, wide, table.shape[1] - wide)
     if times is None:
         return Poses(source, np.arange(float(len(table))), pose, covariance, counted=True)
     stamps = seconds(os.fspath(times), read_table(times, 1)[:, 0], asked or "s", name, noted=not asked)
@@ -113,11 +114,13 @@ def _of_matrices(path: Path, table: Array, wide: int, times: Path | None, asked:
     return Poses(source, stamps, pose, covariance)
 
 
-def _behind(table: Array, first: int, count: int) -> Array | None:
+def _behind(path: Path, table: Array, first: int, count: int) -> Array | None:
     """The covariances in `count` numbers behind the poses."""
     rest = table[:, first : first + count]
     if not count:
         return None
+    if count == 21:
+        return triangle(os.fspath(path), rest, square_header(path))
     size = _covariance_numbers[count]
     return rest.reshape(-1, size, size) if count == size * size else from_upper(rest, size)
 
@@ -128,9 +131,11 @@ def from_files(
 ) -> dict[str, Any]:  # fmt: skip
     """Of files in any of the three formats, with the options of from_tum."""
     units = units_given(units, {"time": ["time"], "truth_time": ["time"]})
+    files = paired(estimate, truth)
+    options = square_options(files, options)
     pairs = [
         (read_poses(e, times, units, "time"), read_poses(t, times, units, "time" if times else "truth_time"))
-        for e, t in paired(estimate, truth)
+        for e, t in files
     ]
     return pose_arguments(pairs, **options)
 
@@ -151,7 +156,8 @@ def from_tum(
     """Trajectories in TUM's format, with the covariance of each pose behind it.
 
     A line is ``time x y z qx qy qz qw`` (s, m), and in the estimate 36 further numbers, the covariance of
-    (translation, rotation) row by row (m, rad; the order of a ROS ``PoseWithCovariance``), or 21, its upper triangle.
+    (translation, rotation) row by row (m, rad; the order of a ROS ``PoseWithCovariance``), or 21, its upper triangle,
+    or its lower one where more of these are covariances.
     49 or 28 are that of the seven numbers of the pose as they stand in the line, which is on ``"R3 x SO3"``.
 
     What is found and not used (frames that seem to differ, a time offset, poses without a truth, components that are
@@ -211,6 +217,17 @@ def from_euroc(estimate: Path | Sequence[Path], truth: Path | Sequence[Path], **
     A line is ``time,x,y,z,qw,qx,qy,qz`` (ns, m), and in the estimate 36 or 21 further numbers, as of :func:`from_tum`.
     The truth may be a file of EuRoC (``state_groundtruth_estimate0/data.csv``) or TUM. Options, what is returned and
     what is raised are those of :func:`from_tum`.
+    """
+    return from_files(estimate, truth, **options)
+
+
+def from_square(estimate: Path | Sequence[Path], truth: Path | Sequence[Path], **options: Any) -> dict[str, Any]:
+    """SQUARE files of smfeval, whose lines are of TUM's format with the lower triangle of the covariance behind.
+
+    Their headers say whether the error is in the body's frame or in the world's, and the gauge: ``fixed``, ``se3`` and
+    ``gravity_yaw`` are `align` ``"none"``, ``"se3"`` and ``"yaw"``, unless it is given. The body is noted. The
+    truth may be a file of TUM, EuRoC or KITTI. Options, what is returned and what is raised are those of
+    :func:`from_tum`, which reads lines without a header.
     """
     return from_files(estimate, truth, **options)
 

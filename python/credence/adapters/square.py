@@ -1,0 +1,81 @@
+"""What the SQUARE files of smfeval say of their covariances, their gauge and their body [SQUARE/0.3]."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from credence._errors import InputError, argument
+from credence.adapters.tables import Array, Path, from_upper, note, text_of
+
+_alignments = {"fixed": "none", "se3": "se3", "gravity_yaw": "yaw"}
+_charts = {"right_perturbation": "local", "left_perturbation": "global"}
+
+
+def square_header(path: Path) -> dict[str, str]:
+    """The keys and values of lines ``#%KEY VALUE`` at the head of a file; none where it is no SQUARE."""
+    said: dict[str, str] = {}
+    with text_of(path) as encoding, open(path, encoding=encoding) as file:
+        for line in file:
+            if not line.startswith("#"):
+                break
+            key, _, value = line[2:].strip().partition(" ")
+            said |= {key: value.strip()} if line.startswith("#%") else {}
+    if "FORMAT" not in said:
+        return {}
+    if said.get("REPRESENTATION") not in ("gaussian_se3", "deterministic"):
+        has = f"it is a SQUARE of {said.get('REPRESENTATION', 'no representation')}"
+        raise InputError(f"{os.fspath(path)}: {has}, not gaussian_se3. Give its means and covariances.")
+    return said
+
+
+def triangle(source: str, numbers: Array, header: dict[str, str]) -> Array:
+    """Covariances [step, 6, 6] of 21 numbers: a SQUARE's lower triangle, row by row; else the upper one, or the lower
+    one where more of these are covariances."""
+    lower = np.zeros((len(numbers), 6, 6))
+    rows, columns = np.tril_indices(6)
+    lower[:, rows, columns] = lower[:, columns, rows] = numbers
+    if header:
+        order = [3, 4, 5, 0, 1, 2] if header.get("TANGENT_ORDER") == "rotation_translation" else slice(None)
+        return lower[:, order][..., order]
+    upper = from_upper(numbers, 6)
+
+    def share(matrices: Array) -> float:
+        values = np.linalg.eigvalsh(matrices[np.isfinite(matrices).all(axis=(1, 2))])
+        return float((values[:, 0] >= -1e-9 * values[:, -1]).mean()) if len(values) else 0.0
+
+    fits, fits_lower = share(upper), share(lower)
+    if max(fits, fits_lower) == 0 and np.isfinite(numbers).any():
+        has = "none of its 21 numbers behind a pose is a covariance, as an upper triangle or as a lower one"
+        raise InputError(f"{source}: {has}. Give all 36.")
+    if fits_lower > fits:
+        note(f"{source}: its 21 numbers are covariances as a lower triangle ({fits_lower:.0%}; as an upper {fits:.0%})")
+    return lower if fits_lower > fits else upper
+
+
+def square_options(files: Sequence[tuple[Path, Path]], given: dict[str, Any]) -> dict[str, Any]:
+    """The options that the headers of the estimates stand for, where they were not given; their bodies are noted."""
+    headers = [(square_header(estimate), square_header(truth)) for estimate, truth in files]
+    kinds = {(of.get("GAUGE"), of.get("TANGENT_CONVENTION"), of.get("BODY_FRAME")) for of, _ in headers if of}
+    if not kinds:
+        return given
+    source = os.fspath(files[0][0])
+    if len(kinds) > 1 or not all(of for of, _ in headers):
+        raise InputError(f"{source}: the other logs have headers that say otherwise. Give logs of one kind.")
+    ((gauge, convention, body),) = kinds
+    if convention not in _charts:
+        raise InputError(f"{source}: unknown TANGENT_CONVENTION {convention}. Give one of {', '.join(_charts)}.")
+    if "align" not in given:
+        if gauge not in _alignments:
+            raise InputError(f"{source}: a gauge of {gauge} is not aligned. Give {argument('align')}.")
+        note(
+            f"{source}: its gauge is {gauge}: {argument('align')} is {_alignments[gauge]}, unless you give another one"
+        )
+    others = {truth.get("BODY_FRAME") for _, truth in headers}
+    if "body" not in given and others != {body}:
+        asked = f"Give {argument('body')} if those of the truth are of another one"
+        note(f"{source}: its poses are of the body {body}. {asked}")
+    return {"manifold": "SE3", "chart": _charts[convention], "align": _alignments.get(str(gauge)), **given}
