@@ -86,8 +86,8 @@ class TestBody:
     @pytest.mark.parametrize(
         ("body", "message"),
         [
-            ("1,2", r"invalid --body \(has 2 numbers"),
-            ("1,2,x", r"invalid --body \(does not hold numbers\)"),
+            ("1,2", r"invalid --body=.*must be 7 finite numbers"),
+            ("1,2,x", r"invalid --body=.*must be 7 finite numbers"),
             ("1,2,3,0,0,0,0", "--body: pose 1 of 1 has a quaternion of length 0"),
         ],
     )

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from credence._errors import argument, wrong
+from credence._errors import argument, invalid
 from credence.adapters.tables import Array, needed, normalised, note, require_unit
 
 ALIGNMENTS = ("none", "first", "se3", "yaw", "first-yaw")
@@ -41,7 +41,7 @@ class Poses(NamedTuple):
         covariance = self.covariance
         if covariance is not None and len(turned):
             J = np.eye(covariance.shape[-1])
-            for i in turned:
+            for i in (i for i in turned if i < len(J)):
                 J[i : i + 3, i : i + 3] = turn.as_matrix()
             covariance = J @ covariance @ J.T
         places, turns = at + turn.apply(self.pose[:, :3] - pivot), turn * rotation(self.pose[:, 3:])
@@ -100,12 +100,11 @@ def body_offset(body: Any) -> Array | None:
         return None
     try:
         offset = np.asarray(body, dtype=float).ravel()
+        offset = np.concatenate([offset, [0.0, 0, 0, 1]]) if offset.size == 3 else offset
     except (TypeError, ValueError):
-        raise wrong("body", "does not hold numbers", "Give x,y,z,qx,qy,qz,qw, or x,y,z") from None
-    if offset.size not in (3, 7) or not np.isfinite(offset).all():
-        why = f"has {offset.size} numbers (must be the 7 of x,y,z,qx,qy,qz,qw, or x,y,z) that are finite"
-        raise wrong("body", why, "Give the pose of the estimate's body in that of the truth")
-    offset = np.concatenate([offset, [0.0, 0, 0, 1][: 7 - offset.size]])
+        offset = np.array([np.nan])
+    if offset.size != 7 or not np.isfinite(offset).all():
+        raise invalid("body", body, "must be 7 finite numbers, or 3", "Give x,y,z,qx,qy,qz,qw, or x,y,z")
     require_unit(argument("body"), offset[None, 3:])
     return offset
 

@@ -29,35 +29,36 @@ def _axes(frame: str, state: Array) -> Any:
     return None
 
 
-class _Orbit:
-    """The segments of a message, with the times (s) and states [step, 6] (km, km/s) of each."""
+def _read(path: Path, start: Any = None) -> tuple[Any, list[tuple[Any, Array, Array]]]:
+    """A time, by default that of the first state, and the segments, with the times since then (s) and states [step, 6]
+    (km, km/s) of each."""
+    oem = needed("oem", "oem", "read orbits")
+    try:
+        read = [(one, list(one.states)) for one in oem.OrbitEphemerisMessage.open(str(path)).segments]
+        start = start or read[0][1][0].epoch
+        return start, [
+            (
+                one,
+                np.array([(each.epoch - start).sec for each in states]),
+                np.array([each.vector[:6] for each in states]),
+            )
+            for one, states in read
+        ]
+    except Exception as error:  # what its parser runs into
+        raise InputError(f"{path}: it cannot be read as an OEM ({one_line(error)}). Check the path.") from None
 
-    def __init__(self, path: Path, start: Any = None) -> None:
-        oem = needed("oem", "oem", "read orbits")
-        self.source = str(path)
-        try:
-            self.segments = oem.OrbitEphemerisMessage.open(str(path)).segments
-            self.start = start or next(iter(self.segments[0].states)).epoch
-            states = [list(segment.states) for segment in self.segments]
-        except Exception as error:  # what its parser runs into
-            raise InputError(f"{path}: it cannot be read as an OEM ({one_line(error)}). Check the path.") from None
-        self.times = [np.array([(one.epoch - self.start).sec for one in each]) for each in states]
-        self.states = [np.array([one.vector[:6] for one in each]) for each in states]
 
-    def at(self, epoch: Any, frame: tuple[str, str]) -> Array | None:
-        """The state at a time, which the message's own method interpolates; None where it has none."""
-        time = (epoch - self.start).sec
-        for segment, times, states in zip(self.segments, self.times, self.states):
-            nearest = int(np.argmin(np.abs(times - time)))
-            if not (epoch in segment or abs(times[nearest] - time) <= same_time):
-                continue
-            if (own := (segment.metadata["REF_FRAME"], segment.metadata["CENTER_NAME"])) != frame:
-                raise InputError(
-                    f"{self.source}: its states are in {own}, those of the estimate in {frame}. Convert one."
-                )
-            exactly: Array = states[nearest]
-            return exactly if abs(times[nearest] - time) <= same_time else np.array(segment(epoch).vector[:6])
-        return None
+def _state(path: Path, orbit: list[tuple[Any, Array, Array]], epoch: Any, time: float, frame: tuple[str, str]) -> Any:
+    """The state [6] at a time, which the message's own method interpolates; None where it has none."""
+    for segment, times, states in orbit:
+        nearest = int(np.argmin(np.abs(times - time)))
+        known = abs(times[nearest] - time) <= same_time
+        if not known and epoch not in segment:
+            continue
+        if (own := (segment.metadata["REF_FRAME"], segment.metadata["CENTER_NAME"])) != frame:
+            raise InputError(f"{path}: its states are in {own}, those of the estimate in {frame}. Convert one.")
+        return states[nearest] if known else np.array(segment(epoch).vector[:6])
+    return None
 
 
 def from_oem(estimate: Path | Sequence[Path], truth: Path | Sequence[Path]) -> dict[str, Any]:
@@ -85,13 +86,14 @@ def from_oem(estimate: Path | Sequence[Path], truth: Path | Sequence[Path]) -> d
     """
     runs = []
     for one, other in paired(estimate, truth):
-        orbit = _Orbit(one)
-        true, rows, asked = _Orbit(other, orbit.start), [], 0
-        for segment in orbit.segments:
+        start, orbit = _read(one)
+        true, rows, asked = _read(other, start)[1], [], 0
+        for segment, _, _ in orbit:
             frame = segment.metadata["REF_FRAME"], segment.metadata["CENTER_NAME"]
             for covariance in segment.covariances:
                 asked += 1
-                of, at = orbit.at(covariance.epoch, frame), true.at(covariance.epoch, frame)
+                epoch, time = covariance.epoch, (covariance.epoch - start).sec
+                of, at = _state(one, orbit, epoch, time, frame), _state(other, true, epoch, time, frame)
                 if of is None or at is None:
                     continue
                 own, to = _axes(covariance.frame, of), _axes("RTN", at)
@@ -100,7 +102,7 @@ def from_oem(estimate: Path | Sequence[Path], truth: Path | Sequence[Path]) -> d
                     raise InputError(f"{one}: {why}. Give covariances in {frame[0]}, RTN or TNW.")
                 J = to if own is None else to @ own.T
                 P = J @ covariance.matrix @ J.T
-                rows.append(((covariance.epoch - orbit.start).sec, to @ (of - at), P))
+                rows.append((time, to @ (of - at), P))
         if not rows:
             raise InputError(f"{one}: {asked} covariances, none at a time of both orbits. Give an OEM that has them.")
         if len(rows) < asked:

@@ -42,13 +42,10 @@ def _pose(message: Any) -> tuple[Any, Any, Any]:
 
 def _twist(message: Any) -> tuple[list[float], Any]:
     """The velocity (linear, angular) and the covariance, if any, of a message with a twist."""
-    twist = message.twist
-    covariance = getattr(twist, "covariance", None)
-    parts = (
-        (twist if covariance is None else twist.twist).linear,
-        (twist if covariance is None else twist.twist).angular,
-    )
-    return [getattr(part, axis) for part in parts for axis in "xyz"], covariance
+    outer = message.twist
+    twist = getattr(outer, "twist", outer)
+    parts = (twist.linear, twist.angular)
+    return [getattr(part, axis) for part in parts for axis in "xyz"], getattr(outer, "covariance", None)
 
 
 def _messages(reader: Any, topic: str) -> Iterator[tuple[int, Any]]:
@@ -136,9 +133,8 @@ def _poses(messages: list[tuple[int, Any]], source: str, twist: bool) -> Poses:
     if twist:
         read = [_twist(message) for _, message in messages]
         P = None if read[0][1] is None else np.array([each for _, each in read], dtype=float).reshape(-1, 6, 6)
-        return Poses(
-            source, stamps, np.array([each for each, _ in read]), P, getattr(messages[0][1], "child_frame_id", "")
-        )
+        body = getattr(messages[0][1], "child_frame_id", "")
+        return Poses(source, stamps, np.array([each for each, _ in read]), P, body)
     parts = [_pose(message) for _, message in messages]
     pose = np.array([(p.x, p.y, p.z, q.x, q.y, q.z, q.w) for p, q, _ in parts])
     first = parts[0][2]

@@ -10,6 +10,7 @@ import numpy as np
 
 from credence import InputError
 from credence.adapters.frames import Poses
+from credence.adapters.geodesy import fixes
 from credence.adapters.poses import in_order, interpolated, pose_arguments, without_gaps
 from credence.adapters.tables import Array, Path, existing, from_upper, needed, note, one_line, paired
 
@@ -152,11 +153,10 @@ def from_px4(path: Path | Sequence[Path], *, max_gap: float = 0.2, **options: An
         if first:
             note(f"{source}: {first} messages before the first pose are left out")
             estimate = estimate.at(np.arange(first, len(estimate.time)))
-        still = np.tile([0.0, 0, 0, 1], (len(places["x"]), 1))
-        truth = Poses(f"{source} groundtruth", _seconds(places), np.hstack([_columns(places, *"xyz"), still]))
-        truth.pose[:, :3] += _origin(source, places, data.get("vehicle_local_position"))
+        origin = _origin(source, places, data.get("vehicle_local_position"))
+        truth = fixes(f"{source} groundtruth", _seconds(places), _columns(places, *"xyz") + origin, None, "")
         found, at = interpolated(in_order(without_gaps(truth)), _seconds(turns), max_gap)
-        pairs.append((estimate, at._replace(pose=np.hstack([at.pose[:, :3], _turns(turns)[found]]))))
+        pairs.append((estimate, at._replace(pose=np.hstack([at.pose[:, :3], _columns(turns, "q", 1, 2, 3, 0)[found]]))))
     (chart, alone), *others = kinds
     if others:
         raise InputError("logs have covariances of several kinds. Give those of one version of PX4 together.")
@@ -168,32 +168,26 @@ def from_px4(path: Path | Sequence[Path], *, max_gap: float = 0.2, **options: An
 
 def _estimated(source: str, data: dict[str, Array]) -> tuple[Poses, str, bool]:
     """The poses of a topic, the chart of their covariances, and whether these are variances alone."""
-
-    def series(name: str, *numbers: int) -> Array:
-        return _columns(data, *(f"{name}[{i}]" for i in numbers))
-
-    chart, alone, q = "global", True, "q"
+    chart, q = "global", _columns(data, "q", 1, 2, 3, 0) if "q[0]" in data else _columns(data, "states", 1, 2, 3, 0)
     if "states[0]" in data:
-        q, place = "states", series("states", 7, 8, 9)
-        if sum(name.startswith("states") for name in data) == sum(name.startswith("covariances") for name in data):
-            P = series("covariances", 7, 8, 9, 1, 2, 3, 0)[:, :, None] * np.eye(7)
-        else:
-            P = series("covariances", 6, 7, 8, 0, 1, 2)[:, :, None] * np.eye(6)
+        place = _columns(data, "states", 7, 8, 9)
+        numbers = [sum(name.startswith(of) for name in data) for of in ("states", "covariances")]
+        of_turns = (7, 8, 9, 1, 2, 3, 0) if numbers[0] == numbers[1] else (6, 7, 8, 0, 1, 2)
+        variances = _columns(data, "covariances", *of_turns)
     elif "position_variance[0]" in data:
-        chart, place = "local", series("position", 0, 1, 2)
-        variances = [series(f"{of}_variance", 0, 1, 2) for of in ("position", "orientation")]
-        P = np.hstack(variances)[:, :, None] * np.eye(6)
+        chart, place = "local", _columns(data, "position", 0, 1, 2)
+        variances = np.hstack([_columns(data, f"{of}_variance", 0, 1, 2) for of in ("position", "orientation")])
     else:
-        alone, place, P = False, _columns(data, *"xyz"), from_upper(series("pose_covariance", *range(21)), 6)
-    return Poses(source, _seconds(data), np.hstack([place, series(q, 1, 2, 3, 0)]), P), chart, alone
+        place, P = _columns(data, *"xyz"), from_upper(_columns(data, "pose_covariance", *range(21)), 6)
+        return Poses(source, _seconds(data), np.hstack([place, q]), P), chart, False
+    P = variances[:, :, None] * np.eye(variances.shape[1])
+    return Poses(source, _seconds(data), np.hstack([place, q]), P), chart, True
 
 
-def _columns(data: dict[str, Array], *names: str) -> Array:
-    return np.stack([data[name].astype(float) for name in names], axis=-1)
-
-
-def _turns(data: dict[str, Array]) -> Array:
-    return _columns(data, *(f"q[{i}]" for i in (1, 2, 3, 0)))
+def _columns(data: dict[str, Array], *names: Any) -> Array:
+    """Some fields; of one name and numbers those elements of it."""
+    fields = [f"{names[0]}[{i}]" for i in names[1:]] if isinstance(names[-1], int) else names
+    return np.stack([data[field].astype(float) for field in fields], axis=-1)
 
 
 def _seconds(data: dict[str, Array]) -> Array:
