@@ -136,6 +136,8 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
         "pos": {"truth", "max_gap", "align", "time_offset", "planar", "pair"},
     }
     used["ulg"] = {"truth_topic", *_poses} - {"twist", "pair"} if given.truth_topic else {"rows"}
+    if names:  # of a table
+        used["text"] = {"truth", "names", "units", "max_gap"}
     allowed = used.get(kind or "", {"names"})
     for option in ("truth", "topic", "truth_topic", "times", "rows", "names", "units", *_poses):
         if getattr(given, option) not in (None, [], {}) and option not in allowed:

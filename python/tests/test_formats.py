@@ -112,6 +112,16 @@ class TestRtklib:
         base = adapters.from_rtklib(self.write(tmp_path / "base.pos", "enu", error), (0, 0, 0))
         np.testing.assert_allclose((base["estimate"] - base["truth"])[0], error, atol=1e-5)
 
+    @pytest.mark.filterwarnings("ignore:.*independent")
+    def test_two_receivers_of_other_frames(self, tmp_path: Path) -> None:
+        way, error = self.path()
+        files = [self.write(tmp_path / f"{k}.pos", "enu", way + (-1) ** k * error) for k in range(2)]
+        np.testing.assert_allclose(adapters.from_rtklib(*files, pair=True)["covariance"][0, 0], 2 * P, rtol=1e-3)
+        turned = self.write(tmp_path / "turned.pos", "enu", Rotation.from_euler("z", 0.5).apply(way))
+        arguments = adapters.from_rtklib(files[0], turned, pair=True, align="yaw")
+        found = Rotation.from_euler("z", -0.5).as_matrix() @ P @ Rotation.from_euler("z", 0.5).as_matrix()
+        np.testing.assert_allclose(arguments["covariance"][0, 0], P + found, rtol=0.05)
+
     def test_refusals(self, tmp_path: Path) -> None:
         way, _ = self.path(20)
         llh, enu, utc = (
@@ -200,6 +210,7 @@ class TestBags:
         np.testing.assert_allclose(arguments["covariance"][0, 3], R)
         how: Any = {"topic": "/odom", "truth_topic": "/gt", "twist": True}
         refused("invalid align .says nothing about velocities", adapters.from_rosbag, bag, **how, align="yaw")
+        refused("the point: it has no velocities", adapters.from_rosbag, bag, (0, 0, 0), topic="/odom", twist=True)
         refused(
             "there is no topic /a of velocities in it. Give one of /gt, /odom",
             adapters.from_rosbag,

@@ -267,10 +267,11 @@ class TestPair:
         with pytest.warns(UserWarning, match="8 of 10 and 10 steps are at the same times"):
             later = adapters.from_pair(one, {**two, "time": times + 2})
         np.testing.assert_allclose(later["error"][0], a[2:] - b[:8], atol=1e-12)
+        np.testing.assert_allclose(later["covariance"], 2 * P[None, :8])
         for changed, message in (
             ({"estimate": b[:9], "time": None}, r"estimates of shapes \(10, 2\) and \(9, 2\)"),
             ({"time": times + 0.5}, "invalid time"),
-            ({"covariance": None}, "the second filter has no covariance"),
+            ({"covariance": None}, "one of both filters has no covariance"),
             ({"component_units": ["m", "m"]}, "invalid component_units .both filters"),
         ):
             refused(message, adapters.from_pair, one, {**two, **changed})

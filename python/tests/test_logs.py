@@ -768,6 +768,7 @@ class TestCommand:
             (["table.csv", "--names", "error=x", "error=y", "sigma=s"], "--names: error is given twice"),
             (["table.csv", "--names", "error=x", "sigma=s", "--units", "y=deg"], "judge: --units: y is nothing that"),
             (["table.csv", "--names", "error=a", "sigma=s", "angles=a"], "in degrees? Say --units a=deg, or a=rad"),
+            (["table.csv", "--names", "error=x", "sigma=s", "--pair"], "--pair: says nothing about a log of this kind"),
             (["a.npz", "--units", "a=deg"], "--units: says nothing about a log of this kind"),
             (["estimate.txt", "--truth", "truth.txt", "--max-gap", "1e-9"], "or a larger --max-gap"),
         ],

@@ -10,9 +10,10 @@ import numpy as np
 from credence import Record
 from credence._arrays import numbers
 from credence._errors import InputError, wrong
+from credence.adapters.frames import wrapped
 from credence.adapters.poses import say_independent
 from credence.adapters.rosbag import from_rosbag, is_bag
-from credence.adapters.tables import Array, Path, match_times, note, same_time
+from credence.adapters.tables import Path, match_times, note, same_time
 from credence.adapters.trajectories import from_files
 
 _of_both = ("manifold", "chart", "quaternion", "component_names", "component_units", "groups", "steps", "runs")
@@ -55,7 +56,7 @@ def from_pair(
     if isinstance(first, (Mapping, Record)) != isinstance(second, (Mapping, Record)):
         raise wrong("second", "the first filter is given in another way", "Give two logs, or the arrays of both")
     if isinstance(first, (Mapping, Record)) and isinstance(second, (Mapping, Record)):
-        return _of_arrays(_given(first), _given(second))
+        return _of_arrays([first, second])
     one: Any = first if isinstance(first, (str, bytes)) or not isinstance(first, Sequence) else first[0]
     if is_bag(one):
         return from_rosbag(first, second, pair=True, **options)  # type: ignore[arg-type]
@@ -64,55 +65,40 @@ def from_pair(
     return from_files(first, second, pair=True, **options)  # type: ignore[arg-type]
 
 
-def _given(filter_: Mapping[str, Any] | Record) -> dict[str, Any]:
-    given = filter_.given() if isinstance(filter_, Record) else dict(filter_)
-    return {name: value for name, value in given.items() if value is not None}
-
-
-def _array(given: Mapping[str, Any], which: str, *names: str) -> Array:
-    for name in names:
-        if name in given:
-            return numbers(name, given[name]).astype(float)
-    raise InputError(f"the {which} filter has no {names[0]}. Give it as judge takes it.")
-
-
-def _of_arrays(first: dict[str, Any], second: dict[str, Any]) -> dict[str, Any]:
-    state = "estimate" if "estimate" in first else "error"
-    states = [_array(one, which, state) for one, which in ((first, "first"), (second, "second"))]
-    spreads = [_array(one, which, "covariance") for one, which in ((first, "first"), (second, "second"))]
-    if any(spread.ndim == of.ndim for spread, of in zip(spreads, states)):  # variances of one of them
-        spreads = [
-            spread if spread.ndim == of.ndim else np.diagonal(spread, axis1=-2, axis2=-1)
-            for spread, of in zip(spreads, states)
-        ]
+def _of_arrays(filters: Sequence[Mapping[str, Any] | Record]) -> dict[str, Any]:
+    fields = [one.given() if isinstance(one, Record) else one for one in filters]
+    given = [{name: value for name, value in one.items() if value is not None} for one in fields]
+    state = "estimate" if "estimate" in given[0] else "error"
+    for name in (state, "covariance"):
+        if not all(name in one for one in given):
+            raise InputError(f"one of both filters has no {name}. Give it as judge takes it.")
     for name in _of_both:
-        if name in first and name in second and not np.array_equal(first[name], second[name]):
+        if all(name in one for one in given) and not np.array_equal(given[0][name], given[1][name]):
             raise wrong(name, "both filters have another one", "Give filters that estimate the same in the same runs")
-    arguments = {name: value for name, value in {**second, **first}.items() if name in _of_both}
-    times = [np.ravel(_array(one, "", "time")) for one in (first, second) if "time" in one]
+    arguments = {name: value for one in reversed(given) for name, value in one.items() if name in (*_of_both, "time")}
+    states, spreads = ([numbers(name, one[name]).astype(float) for one in given] for name in (state, "covariance"))
+    if spreads[0].ndim + spreads[1].ndim == 2 * states[0].ndim + 1:  # variances of one of them
+        spreads = [each if each.ndim == states[0].ndim else np.diagonal(each, axis1=-2, axis2=-1) for each in spreads]
+    times = [np.ravel(numbers("time", one["time"])).astype(float) for one in given if "time" in one]
     if len(times) == 2 and not np.array_equal(times[0], times[1]):
         rows = match_times(times[0], times[1], same_time)
-        if any(of.size != len(at) * of.shape[-1] for of, at in zip(states, times)) or not rows[0].size:
+        if [each.size for each in times] != [each[..., 0].size for each in states] or not rows[0].size:
             raise wrong("time", "that of the second filter is another one", "Give one run a filter, with common times")
         have = f"{rows[0].size} of {len(times[0])} and {len(times[1])} steps"
         note(f"{have} are at the same times, and the others are left out")
-        states, spreads = (
-            [each.reshape(-1, *each.shape[states[0].ndim - 1 :])[row][None] for each, row in zip(both, rows)]
-            for both in (states, spreads)
-        )
-        arguments |= {"time": times[0][rows[0]]}
-    elif times:
-        arguments |= {"time": first.get("time", second.get("time"))}
+        tail = states[0].ndim - 1
+        for both in (states, spreads):
+            both[:] = [each.reshape(-1, *each.shape[tail:])[row][None] for each, row in zip(both, rows)]
+        arguments["time"] = times[0][rows[0]]
     if states[0].shape != states[1].shape or spreads[0].shape != spreads[1].shape:
         why = f"the filters have {state}s of shapes {states[0].shape} and {states[1].shape}"
         raise InputError(f"{why}, and covariances {spreads[0].shape} and {spreads[1].shape}. Give the same of both.")
     say_independent("the first filter", "the second")
-    arguments |= {"covariance": spreads[0] + spreads[1]}
+    arguments["covariance"] = spreads[0] + spreads[1]
     if "manifold" in arguments and state == "estimate":
         return arguments | {"estimate": states[0], "truth": states[1]}
-    difference = states[0] - states[1]
     units = arguments.get("component_units", ())
-    units = units.split(",") if isinstance(units, str) else units
-    turns = [i for i, unit in enumerate(units) if unit.strip() == "rad"]
-    difference[..., turns] = np.remainder(difference[..., turns] + np.pi, 2 * np.pi) - np.pi
+    turns = [i for i, unit in enumerate(units.split(",") if isinstance(units, str) else units) if unit.strip() == "rad"]
+    difference = states[0] - states[1]
+    difference[..., turns] = wrapped(difference[..., turns])
     return {name: value for name, value in arguments.items() if name not in _of_both[:3]} | {"error": difference}

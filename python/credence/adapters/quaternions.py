@@ -27,7 +27,12 @@ def tangent(states: Array, covariance: Array, manifold: str, chart: str, quatern
         maps.append(np.zeros((*states.shape[:-1], J.shape[-2], states.shape[-1])))
         maps[-1][..., columns] = J
         if factor == "SO3":
-            _say_length(states[..., columns], covariance[..., columns, columns])
+            q = normalised(states[..., columns])
+            along = np.einsum("...i,...ij,...j", q, covariance[..., columns, columns], q)
+            note(
+                "the covariance of a quaternion is judged in the three directions that turn; the fourth, its length, "
+                f"has sigmas up to {np.sqrt(max(0.0, np.nanmax(along))):.3g}, and is left out"
+            )
         column += size
     J = np.concatenate(maps, axis=-2)
     reduced: Array = J @ covariance @ np.swapaxes(J, -1, -2)
@@ -43,18 +48,8 @@ def _to_rotation(quaternions: Array, chart: str, order: str) -> Array:
     G = np.zeros((*q.shape[:-1], 3, 4))
     G[..., scalar] = -v
     G[..., first : first + 3] = w[..., None, None] * np.eye(3)
-    crossed = np.cross(np.eye(3), -v[..., None, :]) * (1 if chart == "local" else -1)
-    G[..., first : first + 3] += crossed
+    G[..., first : first + 3] += np.cross(np.eye(3), -v[..., None, :]) * (1 if chart == "local" else -1)
     return 2 * G
-
-
-def _say_length(quaternions: Array, covariance: Array) -> None:
-    q = normalised(quaternions)
-    along = np.sqrt(max(0.0, float(np.nanmax(np.einsum("...i,...ij,...j", q, covariance, q)))))
-    note(
-        "the covariance of a quaternion is judged in the three directions that turn; the fourth, its length, has "
-        f"sigmas up to {along:.3g}, and is left out"
-    )
 
 
 def from_quaternions(**arguments: Any) -> dict[str, Any]:

@@ -33,6 +33,8 @@ def twist_arguments(
         for each in (estimate, truth) if pair else (estimate,):
             if each.covariance is None:
                 raise InputError(f"{each.source}: its velocities have no covariances. Give a log that has them.")
+        if estimate.pose.shape[1] != truth.pose.shape[1]:
+            raise InputError(f"{truth.source}: it has no velocities. Give a truth that has them.")
         estimate, truth = in_order(require_poses(estimate)), in_order(without_gaps(truth))
         if estimate.frame and truth.frame and estimate.frame != truth.frame:
             note(f"{estimate.source}: its velocities are of {estimate.frame}, those of the truth of {truth.frame}")
