@@ -71,7 +71,8 @@ class TestRtklib:
             i = ["enu".index(axis) if kind != "xyz" else "xyz".index(axis) for axis in axes]
             values = [S[i[a], i[b]] for a, b in ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (2, 0))]
             roots = [np.sign(one) * np.sqrt(abs(one)) for one in values]
-            stamp = (pd.Timestamp("2025-03-04") + pd.Timedelta(seconds=k)).strftime("%Y/%m/%d %H:%M:%S.000")
+            at = pd.Timestamp("2025-03-04") + pd.Timedelta(seconds=k, hours=9 if system == "JST" else 0)
+            stamp = at.strftime("%Y/%m/%d %H:%M:%S.000")
             stamp = f"2356{separator}{172800 + k}.000" if weeks else stamp
             if kind == "dms":
                 parts = [(abs(one), "-" if one < 0 else "") for one in row[:2]]
@@ -135,6 +136,8 @@ class TestRtklib:
             enu,
         )
         refused(r"llh.pos: its times are GPST, those of .* UTC. Give time_offset", adapters.from_rtklib, llh, utc)
+        japan = self.write(tmp_path / "jst.pos", "llh", way, system="JST")
+        assert adapters.from_rtklib(japan, utc)["time"][0, 0] == 2356 * 604800 + 172800
         refused("invalid body .*no orientations", adapters.from_rtklib, llh, llh, body=[1, 2, 3])
         (tmp_path / "bare.pos").write_text("2025/03/04 00:00:00 1 2 3\n")
         refused("bare.pos: no line of it names its columns", adapters.from_rtklib, tmp_path / "bare.pos", llh)
