@@ -148,6 +148,14 @@ def _is_gap(label: Any) -> bool:
     return label is None or type(label).__name__ == "NAType" or isinstance(label, list) or bool(label != label)
 
 
+def runs_of(labels: Any) -> npt.NDArray[np.intp]:
+    """The number of each row's run, in the order of their first rows, by what tells the runs apart."""
+    if not isinstance(labels, list) or any(map(_is_gap, labels)):
+        raise wrong("runs", "it is no array [row] without gaps", "Give the number or name of each row's run")
+    first: dict[object, int] = {}
+    return np.array([first.setdefault(label, len(first)) for label in labels], dtype=np.intp)
+
+
 def _parted(arrays: Mapping[str, Any], runs: Any) -> tuple[dict[str, Array], Array]:
     """Flat tables as arrays [trial, step, ...], runs in the order of their first rows; and the lengths of the runs."""
     tables = dict(arrays)
@@ -165,10 +173,7 @@ def _parted(arrays: Mapping[str, Any], runs: Any) -> tuple[dict[str, Array], Arr
             why = f"its column {printable(runs)} is not that of {next(iter(found))}"
             raise invalid(name, why, "Give tables with the same rows")
     parted = {name: numbers(name, table) for name, table in tables.items()}
-    if not isinstance(labels, list) or any(map(_is_gap, labels)):
-        raise wrong("runs", "it is no array [row] without gaps", "Give the number or name of each row's run")
-    first: dict[object, int] = {}
-    run = np.array([first.setdefault(label, len(first)) for label in labels], dtype=np.intp)
+    run = runs_of(labels)
     lengths = np.bincount(run)
     order = np.argsort(run, kind="stable")
     for name, array in parted.items():

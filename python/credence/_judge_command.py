@@ -15,19 +15,28 @@ from typing import Any
 
 from credence._commands import command
 from credence._errors import Failure, InputError, argument, invalid
+from credence._names import joined, parted
 from credence._outputs import check_output, whole
 from credence._record import Record
 
-_columns = ("error", "estimate", "truth", "sigma", "variance", "covariance", "angles")
 _of_judge = ("margin", "margin-direction", "bias", "failed", "segments", "format", "require")
+_of_tables = ("components", "time", "runs")
 _poses = ("manifold", "chart", "max_gap", "align", "body", "time_offset", "planar", "pair", "twist")
+_of_logs = ("truth", "topic", "truth_topic", "times", "rows", "names", "map", "units", "order", *_of_tables, *_poses)
 
 
 def _pairs(given: str) -> dict[str, str]:
-    parted = [word.rpartition("=") for word in given.split(",")]
-    if not all(name and unit for name, _, unit in parted) or len({name for name, _, _ in parted}) < len(parted):
+    pairs = [word.rpartition("=") for word in parted(given)]
+    if not all(name and unit for name, _, unit in pairs) or len({name for name, _, _ in pairs}) < len(pairs):
         raise argparse.ArgumentTypeError(f"{given} is no NAME=UNIT,… with each name once. Give heading=deg, for one")
-    return {name: unit for name, _, unit in parted}
+    return {name: unit for name, _, unit in pairs}
+
+
+class _Joint(argparse.Action):
+    """An option that may be given several times, with other names each."""
+
+    def __call__(self, _: object, given: argparse.Namespace, values: Any, option: str | None = None) -> None:
+        setattr(given, self.dest, {**getattr(given, self.dest), **values})
 
 
 def parser() -> argparse.ArgumentParser:
@@ -53,14 +62,19 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument("--rows", metavar="NAME,…", help="of .ulg: fields, such as gps_hpos,baro_vpos")
     made.add_argument(
         "--names", nargs="+", action="extend", default=[], metavar="WHAT=NAME,…",
-        help="of a table: columns, such as estimate=x,y,yaw truth=gx,gy,gyaw sigma=sx,sy,sa angles=yaw time=t; "
-        "of .npz and .mat: arrays, such as error=e covariance=nav.P; of .mat order=C for [step, n], F for [n, step]",
+        help="of a table: columns, such as estimate=x,y,yaw truth=gx,gy,gyaw sigma=sx,sy,sa angles=yaw time=t "
+        "(docs/logs.md has all words); of .npz and .mat: arrays, such as error=e covariance=nav.P; of .mat order=C for "
+        "[step, n], F for [n, step]",
     )  # fmt: skip
+    for name in _of_tables:
+        made.add_argument(f"--{name}", type=parted, metavar="NAME,…", help=f"of a table: as {name}= of --names")
+    made.add_argument("--map", metavar="FILE.toml", help="of a table: the same names, units and orders, in a file")
     made.add_argument(
-        "--units", type=_pairs, default={}, metavar="NAME=UNIT,…",
+        "--units", type=_pairs, action=_Joint, default={}, metavar="NAME=UNIT,…",
         help="of a table: of its columns, such as heading=deg,t=ms (rad, deg, mgon, arcsec, m, mm, cm, km, s, ms, us, "
         "ns); of times in text files: time, truth_time",
     )  # fmt: skip
+    made.add_argument("--order", metavar="WORD,…", help="of covariances: upper, lower, rotation first, …")
     made.add_argument("--manifold", choices=["SE3", "R3 x SO3"], help="what the covariance of a pose is of")
     made.add_argument("--chart", choices=["local", "global"], help="the frame of the error: the body's or the world's")
     made.add_argument("--twist", action="store_true", default=None, help="of a bag: judge the velocities of Odometry")
@@ -86,7 +100,7 @@ def parser() -> argparse.ArgumentParser:
 
 def is_for_adapters(words: Sequence[str]) -> bool:
     """Whether the words of `judge` name a log that is no record."""
-    asks = any(word in ("-h", "--help") or word.split("=")[0] in ("--truth", "--names") for word in words)
+    asks = any(word in ("-h", "--help") or word.split("=")[0] in ("--truth", "--names", "--map") for word in words)
     paths = [word for before, word in zip(["", *words], words) if before not in ("-o", "--output")]
     return asks or any(_kind(word) for word in paths if not word.startswith("-"))
 
@@ -104,13 +118,13 @@ def _kind(word: str) -> str | None:
 
 
 def _names(given: Sequence[str]) -> dict[str, list[str]]:
-    parted = [word.partition("=") for word in given]
-    for what, _, name in parted:
+    pairs = [word.partition("=") for word in given]
+    for what, _, name in pairs:
         if not what or not name:
             raise InputError(f"--names: {what} has no name (must be WHAT=NAME). Give one, such as error=e.")
-        if [one for one, _, _ in parted].count(what) > 1:
+        if [one for one, _, _ in pairs].count(what) > 1:
             raise InputError(f"--names: {what} is given twice. Give its names once, parted by commas.")
-    return {what: name.split(",") for what, _, name in parted}
+    return {what: parted(name) for what, _, name in pairs}
 
 
 def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
@@ -130,22 +144,22 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
     if "body" in poses:
         poses["body"] = poses["body"].split(",")
     used = {
-        "text": {"truth", "times", "names", "units", *_poses} - {"twist"},
+        "text": {"truth", "times", "names", "map", "units", "order", *_of_tables, *_poses} - {"twist"},
         "bag": {"truth", "topic", "truth_topic", "units", *_poses},
         "oem": {"truth"},
         "pos": {"truth", "max_gap", "align", "time_offset", "planar", "pair"},
     }
     used["ulg"] = {"truth_topic", *_poses} - {"twist", "pair"} if given.truth_topic else {"rows"}
-    if names:  # of a table
-        used["text"] = {"truth", "names", "units", "max_gap"}
+    if names or given.map:  # of a table
+        used["text"] = {"truth", "names", "map", "units", "order", "max_gap", *_of_tables}
     allowed = used.get(kind or "", {"names"})
-    for option in ("truth", "topic", "truth_topic", "times", "rows", "names", "units", *_poses):
+    for option in _of_logs:
         if getattr(given, option) not in (None, [], {}) and option not in allowed:
             raise InputError(f"{argument(option)}: says nothing about a log of this kind. Leave it out.")
     if kind == "bag":
         topics = {"topic": given.topic, "truth_topic": given.truth_topic}
         return adapters.from_rosbag(given.log, given.truth, **topics, units=given.units, **poses)
-    if kind in ("text", "pos", "oem") and not names and given.truth is None:
+    if kind in ("text", "pos", "oem") and not names and not given.map and given.truth is None:
         raise InputError("poses need a truth. Give --truth FILE; or the columns of a table that has both (--names).")
     if kind == "oem":
         return adapters.from_oem(given.log, given.truth)
@@ -165,43 +179,41 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
             return adapters.from_npz(single, arrays)
         order = arrays.pop("order", None)
         return adapters.from_mat(single, arrays, order=order)
-    if names:
-        return _of_table(single, given.truth, names, given.units, given.max_gap)
-    return trajectories.from_files(given.log, given.truth, given.times, given.units, **poses)
+    if names or given.map:
+        names |= {name: value for name in _of_tables if (value := getattr(given, name))}
+        return _of_table(single, given, names)
+    return trajectories.from_files(given.log, given.truth, given.times, given.units, given.order, **poses)
 
 
-def _of_table(
-    log: Any,
-    truth: Sequence[str] | None,
-    names: dict[str, list[str]],
-    units: Mapping[str, str],
-    max_gap: float | None,
-) -> dict[str, Any]:
+def _of_table(log: Any, given: argparse.Namespace, names: dict[str, list[str]]) -> dict[str, Any]:
     from credence.adapters import from_table
+    from credence.adapters.declared import KEYS
 
-    unknown = [what for what in names if what not in (*_columns, "time", "runs")]
+    unknown = [what for what in names if what not in KEYS or what in ("units", "order")]
     if unknown:
-        raise InputError(f"--names: unknown {unknown[0]}. Give some of {', '.join((*_columns, 'time', 'runs'))}.")
-    if not isinstance(log, str) or len(truth or ()) > 1:
+        known = ", ".join(key for key in KEYS if key not in ("units", "order"))
+        raise InputError(f"--names: unknown {unknown[0]}. Give some of {known}.")
+    if not isinstance(log, str) or len(given.truth or ()) > 1:
         raise InputError(
             "a verdict is on one table at a time. Put runs below each other, and name their column (runs)."
         )
-    options: dict[str, Any] = {what: name[0] if what in ("time", "runs") else name for what, name in names.items()}
-    if max_gap is not None:
-        options["max_gap"] = max_gap
-    return from_table(log, truth[0] if truth else None, units=units, **options)
+    more = {"max_gap": given.max_gap, "order": given.order}
+    options: dict[str, Any] = names | {name: value for name, value in more.items() if value is not None}
+    return from_table(log, given.truth[0] if given.truth else None, map=given.map, units=given.units, **options)
 
 
 def log_of(given: argparse.Namespace) -> str:
     """The log and how it was read, as words of a shell."""
     words = list(given.log)
-    for option in ("truth", "topic", "truth_topic", "times", "rows", "names", "units", *_poses):
+    for option in _of_logs:
         value = getattr(given, option)
         name = f"--{option.replace('_', '-')}"
         if option == "names" and value:
             words += [name, *value]
         elif option == "units" and value:
-            words.append(f"{name}={','.join(map('='.join, value.items()))}")
+            words.append(f"{name}={joined(list(map('='.join, value.items())))}")
+        elif option in _of_tables and value:
+            words.append(f"{name}={joined(value)}")
         elif value is True:
             words.append(name)
         elif value:
@@ -242,7 +254,7 @@ def main(given: argparse.Namespace) -> int:
     try:
         if given.record and Path(given.record).suffix != ".h5":
             raise invalid("record", given.record, "must end in .h5", "Give another name")
-        inputs = [*given.log, *(given.truth or ()), *([given.times] if given.times else [])]
+        inputs = [*given.log, *(given.truth or ()), *filter(None, [given.times, given.map])]
         for output in (given.record, given.output):
             if output:
                 check_output(output, given.overwrite, inputs=inputs)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from numbers import Integral, Real
 from typing import Any, NamedTuple
 
@@ -29,6 +30,16 @@ class Named(NamedTuple):
 def not_utf8(text: str) -> bool:
     """Whether a text has halves of characters, which UTF-8 cannot write."""
     return re.search("[\ud800-\udfff]", text) is not None
+
+
+def parted(text: str) -> list[str]:
+    """Names that are parted by commas; one that has a comma is quoted."""
+    return next(csv.reader([text], skipinitialspace=True), [])
+
+
+def joined(names: Sequence[str]) -> str:
+    """The text that `parted` takes apart."""
+    return ",".join(f'"{name}"' if "," in str(name) else str(name) for name in names)
 
 
 def _whole(given: object) -> int | None:

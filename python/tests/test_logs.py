@@ -829,11 +829,22 @@ class TestPage:
         turn = np.degrees(1.0)
         frame = self.frame()
         frame.assign(yaw=turn * frame.yaw, gyaw=turn * frame.gyaw, syaw=turn * frame.syaw).to_csv("table.csv")
+        page = (Path(__file__).parents[2] / "docs" / "logs.md").read_text(encoding="utf-8")
+        Path("drive.toml").write_text(page.split("```toml\n")[1].split("```")[0], encoding="utf-8")
+        self.drive().to_csv("drive.csv")
         scipy.io.savemat("results.mat", {"e": np.ones((2, 30)), "P": np.tile(np.eye(2)[:, :, None], (1, 1, 30))})
         head = "%  GPST latitude(deg) longitude(deg) height(m) Q ns sdn(m) sde(m) sdu(m) sdne(m) sdeu(m) sdun(m)"
         rows = [f"2356 {i}.0 35.16 139.61 70.{i % 7} 1 9 .1 .1 .3 .02 -.01 .02" for i in range(40)]
         Path("rover.pos").write_text("\n".join([head, *rows]))
         TestUlog.write(tmp_path / "flight.ulg", ("ekf2_innovations",))
+
+    @classmethod
+    def drive(cls) -> pd.DataFrame:
+        names = {"x": "East (m)", "y": "North, m", "yaw": "Heading", "gx": "RefE", "gy": "RefN", "gyaw": "RefHdg"}
+        of = {"p11": 0.01, "p12": 0.0, "p13": 0.0, "p22": 0.01, "p23": 0.0, "p33": 0.01 * np.degrees(1.0) ** 2}
+        frame = cls.frame()
+        frame = frame.assign(**of, track=1, GPST=pd.Timestamp("2024-05-06") + pd.to_timedelta(frame.t, "s"))
+        return frame.assign(yaw=np.degrees(frame.yaw), gyaw=np.degrees(frame.gyaw)).rename(columns=names)
 
     @staticmethod
     def frame() -> pd.DataFrame:
@@ -846,7 +857,7 @@ class TestPage:
         page = (Path(__file__).parents[2] / "docs" / "logs.md").read_text(encoding="utf-8")
         code = {name: page.split(f"```{name}\n")[1].split("```")[0] for name in ("sh", "python")}
         commands = [shlex.split(line, comments=True) for line in code["sh"].splitlines() if line.startswith("python")]
-        assert len(commands) == 11
+        assert len(commands) == 12
         for _, _, _, _, *words in commands:
             assert judge_command(words) == 0, capfd.readouterr().err
             assert "one log of " in capfd.readouterr().out

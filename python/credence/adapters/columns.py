@@ -2,216 +2,54 @@
 
 from __future__ import annotations
 
-import csv
 import os
-import warnings
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from credence._arrays import numbers
+from credence._arrays import runs_of
 from credence._errors import InputError, argument
-from credence.adapters.tables import (
-    UNITS,
-    Array,
-    Path,
-    from_upper,
-    needed,
-    neighbours,
-    note,
-    one_line,
-    require_positive,
-    say_matched,
-    seconds,
-    text_of,
-    units_given,
-)
+from credence.adapters.components import Components, interpolated, largest_of
+from credence.adapters.declared import declared, kinds_of, looks_like_innovation, record_names
+from credence.adapters.missing import Rows, held, not_known, say_left_out, variances_of, without
+from credence.adapters.named_columns import NamedColumns
+from credence.adapters.orders import matrices_of
+from credence.adapters.tables import Array, neighbours, note, require_positive, say_matched, units_given
 
-
-def _read_csv(path: Path) -> tuple[list[str], Any]:
-    """The names in a file's first line, parted by commas, semicolons or tabs, and the frame below them."""
-    pandas = needed("pandas", "pandas", "read tables")
-    source = os.fspath(path)
-    with text_of(path) as encoding:
-        with open(path, newline="", encoding=encoding) as file:
-            head = file.readline().lstrip("#")
-        delimiter = max(",;\t", key=head.count)
-        names = [name.strip() for name in next(csv.reader([head], delimiter=delimiter), [])]
-        how = {"sep": delimiter, "encoding": encoding, "skipinitialspace": True, "float_precision": "round_trip"}
-        try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", DeprecationWarning)  # of float_precision, the default from pandas 3 on
-                frame = pandas.read_csv(path, **how, skiprows=1, header=None, low_memory=False)
-        except pandas.errors.EmptyDataError:
-            raise InputError(f"{source}: there are no rows in it. Check the path.") from None
-        except pandas.errors.ParserError as error:
-            _refuse_uneven(path, encoding, delimiter, len(names))
-            raise InputError(f"{source}: it cannot be read as a table ({one_line(error)}). Check the path.") from None
-        if frame.shape[1] != len(names) or frame.iloc[:, -1].isna().any():  # as a row that ends early has it
-            _refuse_uneven(path, encoding, delimiter, len(names))
-    return names, frame
-
-
-def _refuse_uneven(path: Path, encoding: str, delimiter: str, cells: int) -> None:
-    with open(path, newline="", encoding=encoding) as file:
-        file.readline()
-        for number, row in enumerate(filter(None, csv.reader(file, delimiter=delimiter))):
-            if len(row) != cells:
-                raise InputError(
-                    f"{os.fspath(path)}: row {number + 1} below the names has {len(row)} cells (must be {cells}, "
-                    "one for each name). Write a cell, which may be empty, for each."
-                )
-
-
-class _Table:
-    """Columns of a file, a frame, or anything that gives them by name."""
-
-    def __init__(self, table: Any) -> None:
-        if isinstance(table, (str, os.PathLike)):
-            self.source = os.fspath(table)
-            self.names, frame = _read_csv(table)
-            self.columns: Any = {name: frame[i] for i, name in enumerate(self.names)}
-        else:
-            fields = getattr(getattr(table, "dtype", None), "names", None)  # of NumPy
-            self.source, self.columns = "the table", table
-            self.names = list(fields or getattr(table, "columns", table))
-
-    def values(self, name: str) -> Any:
-        """A column as it is."""
-        if self.names.count(name) > 1:
-            raise InputError(f"{self.source}: {self.names.count(name)} columns are called {name}. Rename one of them.")
-        try:
-            return self.columns[name]
-        except (KeyError, ValueError, IndexError):
-            there = ", ".join(map(str, self.names))
-            remedy = "Give the name of one that is there"
-            raise InputError(f"{self.source}: there is no column {name} in it (it has {there}). {remedy}.") from None
-
-    def column(self, name: str) -> Array:
-        values = self.values(name)
-        try:
-            if not isinstance(values, list):
-                return numbers(f"column {name}", values).astype(float)
-            values = [value if isinstance(value, (int, float)) or value.strip() else "nan" for value in values]
-            return np.asarray(values, dtype=float)
-        except (TypeError, InputError) as error:
-            raise InputError(f"{self.source}: {error}") from None
-        except ValueError as error:
-            raise InputError(f"{self.source}: column {name}: {error}. Give columns of numbers.") from None
-
-    def array(self, names: Sequence[str]) -> Array:
-        """[row, n]"""
-        return np.stack([self.column(name) for name in names], axis=-1)
-
-
-class _Components:
-    """The components of the error, by the columns of `error` or `estimate`, and their units."""
-
-    def __init__(self, names: list[str], angles: Sequence[str], units: Mapping[str, str]) -> None:
-        for name in names:
-            if names.count(name) > 1:
-                raise InputError(f"{name} is named as two components. Give each column once.")
-        for name in angles:
-            if name not in names:
-                raise InputError(
-                    f"angles: {name} is no column of the errors or estimates. Give some of {', '.join(names)}."
-                )
-        self.names = names
-        self.units = dict.fromkeys(angles, "rad") | {name: unit for name, unit in units.items() if name in names}
-        self.scale = np.array([UNITS[self.units[name]][1] if name in self.units else 1.0 for name in names])
-        kinds = [UNITS[self.units[name]][0] if name in self.units else "" for name in names]
-        self.turns = [i for i, kind in enumerate(kinds) if kind == "angle"]
-        self.doubtful = [i for i in self.turns if names[i] not in units]
-        self.known = {"component_units": ["rad" if kind == "angle" else "m" for kind in kinds]}
-        if not units or "" in kinds:
-            self.known = {}
-
-    def wrapped(self, differences: Array) -> Array:
-        differences[:, self.turns] = np.remainder(differences[:, self.turns] + np.pi, 2 * np.pi) - np.pi
-        return differences
-
-    def refuse_degrees(self, source: str, values: Array) -> None:
-        """Refuse angles that were not said to be in rad and are wrapped at 360."""
-        for i in self.doubtful:
-            known = values[np.isfinite(values[:, i]), i]
-            if len(known) > 1 and 300 < np.ptp(known) < 361 and np.abs(np.diff(known)).max() > 180:
-                spans = f"goes from {known.min():.4g} to {known.max():.4g} and jumps, as if it were wrapped at 360"
-                raise self._in_degrees(source, i, spans)
-
-    def refuse_sigmas(self, source: str, covariance: Array) -> None:
-        """Refuse sigmas that are not those of an angle in rad."""
-        variances = covariance if covariance.ndim == 2 else np.diagonal(covariance, axis1=1, axis2=2)
-        for i in self.doubtful:
-            known = variances[variances[:, i] > 0, i]
-            usual = float(np.sqrt(np.median(known))) if len(known) else 0.0
-            if np.pi < usual < 360:  # beyond it a placeholder
-                raise self._in_degrees(source, i, f"has sigmas of {usual:.3g}, and those of an angle are below pi rad")
-
-    def refuse_folded(self, source: str, differences: Array, largest: Array, most: float = 4 * np.pi) -> None:
-        """Refuse angles whose differences beyond half a turn, which are folded, are not about whole turns, as they are
-        in rad; note them where the largest numbers of the columns [n] are at most `most`."""
-        for i in self.doubtful:
-            folded = differences[np.abs(differences[:, i]) > np.pi, i]
-            if not len(folded) or np.cos(folded).mean() > 0.5:
-                continue
-            what = f"{len(folded)} of {len(differences)} differences are beyond half a turn and no whole turns"
-            if largest[i] > most:
-                raise self._in_degrees(source, i, f"has numbers up to {largest[i]:.4g}, and {what}")
-            note(f"{source}: {self.names[i]}: {what}. They are folded. If it is in degrees, say {self._units(i)}.")
-
-    def _units(self, i: int) -> str:
-        return f"{argument('units')} {self.names[i]}=deg"
-
-    def _in_degrees(self, source: str, i: int, why: str) -> InputError:
-        name = self.names[i]
-        return InputError(f"{source}: {name}, an angle, {why}: in degrees? Say {self._units(i)}, or {name}=rad if not.")
-
-
-def _largest(*columns: Array) -> Array:
-    """[n] of columns [row, n]"""
-    sizes: Array = np.max([np.abs(np.where(np.isfinite(each), each, 0)).max(axis=0) for each in columns], axis=0)
-    return sizes
-
-
-def _interpolated(
-    table: _Table, names: Sequence[str], times: Array, components: _Components
-) -> tuple[Array, Array, Array]:
-    """The times of the truth, in order, its values there, angles without jumps, and how large these were."""
-    order = np.argsort(times, kind="stable")
-    values = table.array(names)[order]
-    largest = _largest(values)
-    components.refuse_degrees(table.source, values)
-    components.refuse_folded(table.source, np.diff(values, axis=0), largest)
-    values /= components.scale
-    for i in components.turns:
-        values[:, i] = np.unwrap(values[:, i])
-    return times[order], values, largest
-
-
-def _list(names: str | Sequence[str]) -> list[str]:
-    return [names] if isinstance(names, str) else list(names)
+Names = str | Sequence[str]
 
 
 def from_table(
     table: Any,
     truth_table: Any = None,
     *,
-    error: str | Sequence[str] | None = None,
-    estimate: str | Sequence[str] | None = None,
-    truth: str | Sequence[str] | None = None,
-    sigma: str | Sequence[str] | None = None,
-    variance: str | Sequence[str] | None = None,
-    covariance: str | Sequence[str] | None = None,
-    angles: str | Sequence[str] = (),
-    time: str | None = None,
+    map: str | os.PathLike[str] | Mapping[str, Any] | None = None,
+    error: Names | None = None,
+    estimate: Names | None = None,
+    truth: Names | None = None,
+    sigma: Names | None = None,
+    variance: Names | None = None,
+    covariance: Names | None = None,
+    innovation: Names | None = None,
+    innovation_sigma: Names | None = None,
+    innovation_variance: Names | None = None,
+    innovation_covariance: Names | None = None,
+    nees: str | None = None,
+    nis: str | None = None,
+    dimension: int | None = None,
+    components: Names | None = None,
+    angles: Names | None = None,
+    time: Names | None = None,
     runs: str | None = None,
     units: Mapping[str, str] | None = None,
+    order: Names | None = None,
     max_gap: float = 0.2,
 ) -> dict[str, Any]:
     """Columns of a CSV file or a frame, by their names.
 
-    Needs pandas for a file.
+    Needs pandas for a file, and for times that are texts.
 
     Parameters
     ----------
@@ -219,110 +57,236 @@ def from_table(
         A row for each step. A file has the names in its first line; empty cells are NaN.
     truth_table : the same
         Where the truth stands in a table of its own: it is interpolated at the times of `table` (`time`, in both).
+    map : path of a TOML file, or dict
+        Any of the arguments that follow, but `max_gap`, by their names. What is given as an argument counts instead.
     error : list of str
         Columns of estimate - truth; or else
     estimate, truth : lists of str
         columns of both, one for each component.
     sigma, variance, covariance : list of str
-        One of them: standard deviations, variances, or the covariance row by row, whole or its upper triangle.
+        One of them: standard deviations, variances, or the covariance row by row, whole or a triangle (`order`).
+    innovation, innovation_sigma, innovation_variance, innovation_covariance : lists of str
+        The same of the innovations, beside errors or in their place.
+    nees, nis, dimension : str, str, int
+        The column of NEES or NIS, where there is nothing else, and of how many numbers each is.
+    components : list of str
+        What the components of the error (or of innovations alone) are called; without it, as their columns.
     angles : list of str
-        Which of the columns of `error` or `estimate` are angles: their differences are wrapped. They are in rad, unless
-        `units` says otherwise; what cannot be is refused.
-    time : str
-        The column of times (s); they must increase.
+        Which of the components are angles: their differences are wrapped. They are in rad, unless `units` says
+        otherwise; what cannot be is refused.
+    time : str, or two
+        The column of times, which must increase: numbers (s), dates (ISO 8601, ``YYYY/MM/DD hh:mm:ss.sss``), or week
+        and seconds of GPS, which may be two columns, as a date and a time of day may be.
     runs : str
-        The column that tells runs apart.
+        The column that tells runs apart, each of which has its own length.
     units : dict
-        Of columns of `error` or `estimate` ``"rad"``, ``"deg"``, ``"mgon"`` or ``"arcsec"``, which make it an angle, or
-        ``"m"``, ``"mm"``, ``"cm"`` or ``"km"``. Its truth, sigma, variances and covariances are then in the same unit,
-        and what is returned is in rad and m. Of `time`, and of `truth_time` where that of `truth_table` is another one,
-        ``"s"``, ``"ms"``, ``"us"`` or ``"ns"``.
+        Of components, or of their columns, ``"rad"``, ``"deg"``, ``"mgon"`` or ``"arcsec"``, which make it an angle, or
+        ``"m"``, ``"mm"``, ``"cm"`` or ``"km"``. The truth, sigma, variances and covariances are then in the same unit,
+        unless a column of `truth`, `sigma` or `variance` has one of its own, and what is returned is in rad and m. Of
+        `time`, and of `truth_time` where that of `truth_table` is another one, ``"s"``, ``"ms"``, ``"us"`` or ``"ns"``.
+    order : str, or list of str
+        Of `covariance` and `innovation_covariance`: ``"upper"``, ``"lower"`` (both row by row), ``"diagonals"`` (the
+        variances, then what is beside them) or ``"full"``; ``"rotation first"`` where angles come before the rest;
+        ``"signed roots"`` where each number is the signed root of a covariance. A triangle that is not said is the one
+        that gives positive definite matrices.
     max_gap : float
         As of :func:`from_tum`.
 
     Returns
     -------
     dict
-        `error` and `covariance` [row, …], with `runs`; or [1, step, …]. With `time` and `component_names`, and with
-        `component_units` where `units` says those of all that are no angles.
+        `error` and `covariance`, or `innovation` and `innovation_covariance`, or both, or `nees` and `dimension`:
+        [row, …] with `runs`, or [1, step, …] with `steps`. With `time` and `component_names`, and with
+        `component_units` where `units` says those of all that are no angles. Steps that cannot be judged are left out,
+        and components are NaN as long as P says "not known" (docs/logs.md).
 
     Raises
     ------
     InputError
-        If a column is not there or not of numbers, columns do not fit each other, a standard deviation is negative, or
-        a unit cannot be right.
+        If a column is not there or not of numbers, columns do not fit each other, a standard deviation is negative, a
+        unit or order cannot be right, or no step can be judged.
     """
-    rows, names = _Table(table), _list(error or estimate or ())
-    spreads = {"sigma": sigma, "variance": variance, "covariance": covariance}
-    given = {name: _list(columns) for name, columns in spreads.items() if columns}
-    if len(given) != 1 or not names or (error is None) == (estimate is None or truth is None):
-        raise InputError(
-            "cannot judge this table (it takes error, or estimate and truth, and one of sigma, variance and "
-            "covariance). Give the names of these columns."
+    left_out = ("table", "truth_table", "map", "max_gap")
+    given = declared(map, {name: value for name, value in locals().items() if name not in left_out})
+    return _Reader(NamedColumns(table), given).arguments(truth_table, max_gap)
+
+
+class _Reader:
+    """A table, and what its columns are."""
+
+    def __init__(self, rows: NamedColumns, given: Mapping[str, Any]) -> None:
+        self.rows, self.source, self.given = rows, rows.source, given
+        self.spreads = kinds_of(given)
+        columns = [given.get("error") or given.get("estimate", []), given.get("innovation", [])]
+        spreads = [given.get(name, []) for name in self.spreads]
+        labels, angles = given.get("components", []), given.get("angles", [])
+        own = [*columns[0], *columns[1], *labels]
+        for name in angles:
+            if name not in own:
+                some = ", ".join(own)
+                raise InputError(f"angles: {name} is no column of the errors or estimates. Give some of {some}.")
+        kinds = {name: ["time"] for name in ("time", "truth_time", *given.get("time", []))}
+        truths = given.get("truth", [])
+        kinds |= {name: ["angle", "length"] for name in (*own, *truths, *spreads[0], *spreads[1])}
+        self.units = units_given(given["units"], kinds)
+        self.errors, self.innovations = (
+            Components(of, labels if labels and is_named else of, angles, self.units, spread, truth)
+            for of, spread, truth, is_named in zip(columns, spreads, (truths, []), (columns[0], not columns[0]))
         )
-    kinds = {name: ["time"] for name in ("time", "truth_time", time) if name is not None}
-    units = units_given(units, kinds | {name: ["angle", "length"] for name in names})
-    components = _Components(names, _list(angles), units)
-    unit = units.get(time or "time", units.get("time", "s"))
-    times = None
-    if time is not None:
-        times = seconds(rows.source, rows.column(time), unit, "time", noted=truth_table is not None and not units)
-    kept: Any = slice(None)
-    most = 4 * np.pi
-    own = rows.array(names)
-    largest = _largest(own)
-    components.refuse_degrees(rows.source, own)
-    if error is None:
-        true = _list(truth or ())
-        if len(true) != len(names):
-            raise InputError(f"truth has {len(true)} columns (must be {len(names)}, as estimate). Give one for each.")
+        self.left: dict[str, Rows] = {}  # why rows cannot be judged
+        if like := looks_like_innovation(given.get("error", [])):
+            say = f"If it is one, name it {argument('innovation')}: without a truth the verdict is on innovations"
+            note(f"{self.source}: {like} is given as an error, and called like an innovation. {say}.")
+
+    def arguments(self, truth_table: Any, max_gap: float) -> dict[str, Any]:
+        """What `from_table` returns."""
+        steps: dict[str, Array] = {}
+        if "time" in self.given:
+            noted = truth_table is not None and not self.units
+            steps["time"] = self.rows.times(self.given["time"], self._unit_of_time(), "time", noted)
+            self.left["have no time"] = np.isnan(steps["time"])
+        for name in {"nees", "nis"} & self.given.keys():
+            steps["nees"] = self.rows.column(self.given[name][0])
+            self.left["have no number"] = np.isnan(steps["nees"])
+            if name == "nis":
+                self._note_places("NIS stands in the place of NEES")
+        if self.innovations.names:
+            steps |= self._innovations()
+        labels = np.asanyarray(self.rows.values(self.given["runs"][0])) if "runs" in self.given else None
+        components = self.errors if self.errors.names else self.innovations
+        kept, run = list(range(len(components.names))), None if labels is None else runs_of(labels.tolist())
+        if self.errors.names:
+            steps = self._errors(steps, truth_table, max_gap)
+        if kept:
+            kept = self._without_placeholders(steps, components, run)
+        rows = self._judged(steps, run)
+        about = {"dimension": self.given["dimension"]} if "nees" in steps else self._names(components, kept)
+        if labels is not None:
+            return {name: array[rows] for name, array in steps.items()} | {"runs": labels[rows]} | about
+        single = {name: array[rows][None] for name, array in steps.items()}
+        return single | {"steps": np.array([rows.sum()])} | about
+
+    def _note_places(self, what: str) -> None:
+        note(f"{self.source}: {what}: what the report says of NEES is of NIS, and nothing is said of P")
+
+    def _unit_of_time(self) -> str:
+        return self.units.get(self.given["time"][0], self.units.get("time", "s"))
+
+    def _names(self, components: Components, kept: Sequence[int]) -> dict[str, Any]:
+        names = record_names(components.names)
+        others = [f"{name} is {label}" for name, label in zip(names, components.names) if name != str(label)]
+        if others:
+            note(f"{self.source}: in the report {', '.join(others)}")
+        return {"component_names": [names[i] for i in kept]} | {
+            name: [units[i] for i in kept] for name, units in components.known.items()
+        }
+
+    def _spread(self, kind: str, components: Components) -> Array:
+        """Variances [row, n], or covariances [row, n, n], in the units of the columns."""
+        columns, n = self.given[kind], len(components.names)
+        values, is_joint = self.rows.array(columns), kind.endswith("covariance")
+        if is_joint and len(columns) in (n * n, n * (n + 1) // 2):
+            return matrices_of(self.source, values, n, self.given.get("order", ()), components.turns)
+        if is_joint or len(columns) != n:
+            wanted = f"{n * n} or {n * (n + 1) // 2}" if is_joint else f"{n}, one for each component"
+            raise InputError(f"{kind} has {len(columns)} columns (must be {wanted}). Give one for each entry.")
+        if not kind.endswith("sigma"):
+            return values
+        require_positive(self.source, f"{kind} ({', '.join(columns)})", values)
+        return values**2
+
+    def _errors(self, steps: Mapping[str, Array], truth_table: Any, max_gap: float) -> dict[str, Array]:
+        components = self.errors
+        own, kept, most = self.rows.array(components.columns), slice(None), 4 * np.pi
+        largest = largest_of(own)
+        components.refuse_degrees(self.source, own)
+        error = own / components.scale
+        if "error" in self.given:
+            most = 2 * np.pi  # two angles in a turn are at most a turn apart
+        else:
+            kept, true, largest_truth = self._truth(steps, truth_table, max_gap)
+            largest, error = np.maximum(largest, largest_truth), error[kept] - true
+            self.left = {reason: rows[kept] for reason, rows in self.left.items()}
+        covariance = self._spread(self.spreads[0], components)[kept]
+        none = np.asarray(np.isnan(np.hstack([own[kept], variances_of(covariance)])).all(axis=1))
+        if 2 * none.sum() > len(none):  # of a filter that was not asked at each row
+            self.left["have neither an estimate nor a covariance"] = none
+        components.refuse_sigmas(self.source, error, covariance)
+        components.refuse_folded(self.source, error, largest, most)
+        components.ask_about_turns(self.source, own[kept], error)
+        states = {"error": components.wrapped(error), "covariance": components.scaled(covariance)}
+        return {name: array[kept] for name, array in steps.items()} | states
+
+    def _truth(self, steps: Mapping[str, Array], truth_table: Any, max_gap: float) -> tuple[Any, Array, Array]:
+        """The rows that have a truth, their true values, and how large its numbers are."""
+        names, components, times = self.given["truth"], self.errors, steps.get("time")
+        if len(names) != len(components.names):
+            has = f"truth has {len(names)} columns (must be {len(components.names)}, as estimate)"
+            raise InputError(f"{has}. Give one for each.")
         if truth_table is None:
-            at = rows.array(true)
-            components.refuse_degrees(rows.source, at)
-            largest = np.maximum(largest, _largest(at))
-            own = own / components.scale - at / components.scale
-        elif times is None or time is None or runs is not None:
+            true = self.rows.array(names)
+            missing: Rows = np.isnan(true)
+            if empty := [name for name, none in zip(names, np.asarray(missing.all(axis=0))) if none]:
+                raise InputError(f"{self.source}: column {empty[0]} has no number. Leave out this truth's component.")
+            self.left["have no truth"] = np.asarray(missing.any(axis=1))
+            components.refuse_degrees(self.source, true, of_truth=True)
+            true /= components.truth_scale
+            return slice(None), true, largest_of(true)
+        if times is None or "runs" in self.given:
             raise InputError(
                 "cannot use a table of the truth (it needs time, and one run a table). Give the column of time."
             )
-        else:
-            other = _Table(truth_table)
-            of_truth = units.get("truth_time", unit)
-            stamps = seconds(other.source, other.column(time), of_truth, "truth_time", noted=not units)
-            of, values, largest_truth = _interpolated(other, true, stamps, components)
-            kept, before, after, share = neighbours(of, times, max_gap)
-            say_matched(rows.source, times, kept, other.source, of, max_gap)
-            largest = np.maximum(largest, largest_truth)
-            own = own[kept] / components.scale - (values[before] + share[:, None] * (values[after] - values[before]))
-    else:
-        own = own / components.scale
-        most = 2 * np.pi  # two angles in a turn are at most a turn apart
-    covariances = _covariances(given, rows, len(names))[kept]
-    components.refuse_sigmas(rows.source, covariances)
-    components.refuse_folded(rows.source, own, largest, most)
-    covariances /= components.scale if covariances.ndim == 2 else components.scale[:, None]
-    covariances /= components.scale
-    arguments: dict[str, Any] = {"error": components.wrapped(own), "covariance": covariances}
-    if times is not None:
-        arguments["time"] = times[kept]
-    if runs is not None:
-        arguments["runs"] = np.asanyarray(rows.values(runs))
-    else:
-        arguments = {name: array[None] for name, array in arguments.items()}
-    component_names = ["_".join(name.split()).replace(",", "_") for name in names]
-    return arguments | {"component_names": component_names} | components.known
+        other = NamedColumns(truth_table)
+        unit = self.units.get("truth_time", self._unit_of_time())
+        stamps = other.times(self.given["time"], unit, "truth_time", not self.units)
+        of, values, largest = interpolated(other, names, stamps, components)
+        kept, before, after, share = neighbours(of, times, max_gap)
+        say_matched(self.source, times, kept, other.source, of, max_gap)
+        return kept, values[before] + share[:, None] * (values[after] - values[before]), largest
 
+    def _innovations(self) -> dict[str, Array]:
+        """Innovations and S. Where there are no errors, and no correlations either, they stand in the errors' place, so
+        that each is judged by itself."""
+        components = self.innovations
+        own = self.rows.array(components.columns)
+        components.refuse_degrees(self.source, own)
+        values, S = own / components.scale, self._spread(self.spreads[1], components)
+        components.refuse_sigmas(self.source, values, S)
+        components.refuse_folded(self.source, values, largest_of(own), 2 * np.pi)
+        values, S = components.wrapped(values), components.scaled(S)
+        if not self.errors.names:
+            missing: Rows = np.isnan(values)
+            self.left["have no innovation"] = np.asarray(missing.all(axis=1))
+            self.left["have innovations of some rows alone"] = np.asarray(missing.any(axis=1))
+            if S.ndim == 2 and S.shape[1] > 1:
+                self._note_places("the innovations stand in the place of errors, each by itself")
+                return {"error": values, "covariance": S}
+        return {"innovation": values, "innovation_covariance": S if S.ndim == 3 else S[:, :, None] * np.eye(S.shape[1])}
 
-def _covariances(given: Mapping[str, Sequence[str]], rows: _Table, n: int) -> Array:
-    """Variances [row, n], or covariances [row, n, n]."""
-    ((kind, columns),) = given.items()
-    values = rows.array(columns)
-    if kind == "covariance" and len(columns) in (n * n, n * (n + 1) // 2):
-        return values.reshape(-1, n, n) if len(columns) == n * n else from_upper(values, n)
-    if kind == "covariance" or len(columns) != n:
-        wanted = f"{n * n} or {n * (n + 1) // 2}" if kind == "covariance" else f"{n}, one for each component"
-        raise InputError(f"{kind} has {len(columns)} columns (must be {wanted}). Give one for each entry.")
-    if kind != "sigma":
-        return values
-    require_positive(rows.source, f"sigma ({', '.join(columns)})", values)
-    return values**2
+    def _without_placeholders(
+        self, steps: dict[str, Array], components: Components, run: NDArray[np.intp] | None
+    ) -> list[int]:
+        """The components whose P is known somewhere; the others are taken out of the steps, and NaN before it is."""
+        of, of_P = ("error", "covariance") if "error" in steps else ("innovation", "innovation_covariance")
+        error, covariance = steps[of], steps[of_P]
+        run = np.zeros(len(error), dtype=np.intp) if run is None else run
+        logged = error * components.scale, variances_of(covariance) * components.spread_scale**2
+        kept, starts, later = not_known(self.source, *logged, components.names, run)
+        if later.any():
+            self.left['have a variance that says "not known"'] = later
+        if starts.any():
+            steps[of], steps[of_P] = np.where(starts, np.nan, error), without(covariance, starts)
+        if len(kept) < error.shape[1]:
+            steps[of], covariance = steps[of][:, kept], steps[of_P][:, kept]
+            steps[of_P] = covariance[:, :, kept] if covariance.ndim == 3 else covariance
+        return kept
+
+    def _judged(self, steps: dict[str, Array], run: NDArray[np.intp] | None) -> NDArray[np.bool_]:
+        """The rows that are judged; in several runs those within a run that are not become steps that are missing, so
+        that a step has its number in each."""
+        left = say_left_out(self.source, len(next(iter(steps.values()))), self.left)
+        if run is None or not left.any():
+            return ~left
+        for name in {"error", "covariance", "innovation", "innovation_covariance", "nees"} & steps.keys():
+            steps[name] = np.where(left.reshape(-1, *[1] * (steps[name].ndim - 1)), np.nan, steps[name])
+        return ~held(left[::-1, None], run[::-1])[::-1, 0]

@@ -21,6 +21,7 @@ from credence.adapters.frames import (
     with_body,
     yaw_of,
 )
+from credence.adapters.missing import none_throughout
 from credence.adapters.quaternions import tangent
 from credence.adapters.tables import Array, neighbours, normalised, note, require_unit, say_matched, stacked
 
@@ -101,14 +102,6 @@ def _associated(estimate: Poses, truth: Poses, max_gap: float, time_offset: floa
     return estimate.at(found), at
 
 
-def placeholders(covariances: Sequence[Array]) -> NDArray[np.bool_]:
-    """[n]: whether a component's variance stands for none throughout."""
-    variances = np.concatenate([np.diagonal(each, axis1=1, axis2=2) for each in covariances])
-    one_large = (variances >= 1e4).all(axis=0) & (np.ptp(variances, axis=0) == 0)
-    none: NDArray[np.bool_] = np.logical_or(~((variances > 0) & (variances < 1e6)).any(axis=0), one_large)
-    return none
-
-
 def estimated_components(runs: Sequence[Poses]) -> list[int]:
     """Indices of (x, y, z, roll, pitch, yaw) that a log estimates.
 
@@ -116,7 +109,7 @@ def estimated_components(runs: Sequence[Poses]) -> list[int]:
     one and the same number from 10^4 on); nor are z, roll and pitch where twenty poses or more do not change them.
     """
     poses = np.concatenate([run.pose for run in runs])
-    none = placeholders(_covariances(runs))
+    none = none_throughout(_covariances(runs))
     if len(poses) >= 20:  # of fewer poses none may have left the plane yet
         x, y, z, w = poses[:, 3:].T
         up = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x)])  # the body's z axis: where roll and pitch show

@@ -6,10 +6,8 @@ import os
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from credence._errors import InputError, argument
-from credence.adapters.tables import Array, Path, from_upper, note, text_of
+from credence.adapters.tables import Path, note, text_of
 
 _alignments = {"fixed": "none", "se3": "se3", "gravity_yaw": "yaw"}
 _charts = {"right_perturbation": "local", "left_perturbation": "global"}
@@ -32,28 +30,11 @@ def square_header(path: Path) -> dict[str, str]:
     return said
 
 
-def triangle(source: str, numbers: Array, header: dict[str, str]) -> Array:
-    """Covariances [step, 6, 6] of 21 numbers: a SQUARE's lower triangle, row by row; else the upper one, or the lower
-    one where more of these are covariances."""
-    lower = np.zeros((len(numbers), 6, 6))
-    rows, columns = np.tril_indices(6)
-    lower[:, rows, columns] = lower[:, columns, rows] = numbers
-    if header:
-        order = [3, 4, 5, 0, 1, 2] if header.get("TANGENT_ORDER") == "rotation_translation" else slice(None)
-        return lower[:, order][..., order]
-    upper = from_upper(numbers, 6)
-
-    def share(matrices: Array) -> float:
-        values = np.linalg.eigvalsh(matrices[np.isfinite(matrices).all(axis=(1, 2))])
-        return float((values[:, 0] >= -1e-9 * values[:, -1]).mean()) if len(values) else 0.0
-
-    fits, fits_lower = share(upper), share(lower)
-    if max(fits, fits_lower) == 0 and np.isfinite(numbers).any():
-        has = "none of its 21 numbers behind a pose is a covariance, as an upper triangle or as a lower one"
-        raise InputError(f"{source}: {has}. Give all 36.")
-    if fits_lower > fits:
-        note(f"{source}: its 21 numbers are covariances as a lower triangle ({fits_lower:.0%}; as an upper {fits:.0%})")
-    return lower if fits_lower > fits else upper
+def square_order(path: Path) -> list[str]:
+    """The words of an order [orders.py] that the header of a SQUARE stands for; none of another file."""
+    header = square_header(path)
+    turned = header.get("TANGENT_ORDER") == "rotation_translation"
+    return [*(["lower"] if header else []), *(["rotation first"] if turned else [])]
 
 
 def square_options(files: Sequence[tuple[Path, Path]], given: dict[str, Any]) -> dict[str, Any]:

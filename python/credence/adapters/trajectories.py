@@ -10,8 +10,9 @@ import numpy as np
 
 from credence import InputError
 from credence.adapters.frames import Poses, quaternions
+from credence.adapters.orders import matrices_of, words_of
 from credence.adapters.poses import pose_arguments
-from credence.adapters.square import square_header, square_options, triangle
+from credence.adapters.square import square_options, square_order
 from credence.adapters.tables import (
     Array,
     Path,
@@ -61,18 +62,20 @@ def _poses(rows: Sequence[Array]) -> Array:
 
 
 def read_poses(
-    path: Path, times: Path | None = None, units: Mapping[str, str] | None = None, name: str = "truth_time"
-) -> Poses:
+    path: Path, times: Path | None = None, units: Mapping[str, str] | None = None, name: str = "truth_time",
+    order: str | Sequence[str] | None = None,
+) -> Poses:  # fmt: skip
     """Poses of a text file in the format of TUM, EuRoC or KITTI, which its separators and columns tell; `units` may say
-    the unit of its times by this name."""
+    the unit of its times by this name, and `order` that of its covariances."""
     source, asked = os.fspath(path), (units or {}).get(name)
     with text_of(path) as encoding, open(path, encoding=encoding) as file:
         euroc = "," in next((line for line in file if line.strip() and not line.startswith("#")), "")
     table = read_table(path, delimiter="," if euroc else None)
     require_width(path, table, least=_pose_columns)
     if wide := 0 if euroc else _matrix_numbers(table):
-        return _of_matrices(path, table, wide, times, asked, name)
-    pose = table[:, 1:8][:, _w_last if euroc else slice(None)]
+        return _of_matrices(path, table, wide, times, asked, name, order)
+    words = words_of(order, "qw first")
+    pose = table[:, 1:8][:, _w_last if euroc or "qw first" in words else slice(None)]
     behind = table.shape[1] - _pose_columns
     if not euroc and table.shape[1] in _like_matrices:
         has = f"its lines have {table.shape[1]} numbers"
@@ -81,7 +84,7 @@ def read_poses(
             raise InputError(f"{source}: {has} and {either}. Check what kind of file it is.")
         note(f"{source}: {has} and are no matrices of KITTI: the first 8 are taken for TUM's time and pose")
     stamps = seconds(source, table[:, 0], asked or ("ns" if euroc else "s"), name, noted=not asked)
-    covariance = _behind(path, table, _pose_columns, behind if behind in _covariance_numbers else 0)
+    covariance = _behind(path, table, _pose_columns, behind if behind in _covariance_numbers else 0, order)
     if euroc and covariance is not None and behind in (49, 28):
         covariance = covariance[:, _w_last][..., _w_last]
     return Poses(source, stamps, pose, covariance)
@@ -99,12 +102,15 @@ def _matrix_numbers(table: Array) -> int:
     return wide if turns and (last == [0, 0, 0, 1]).all() else 0
 
 
-def _of_matrices(path: Path, table: Array, wide: int, times: Path | None, asked: str | None, name: str) -> Poses:
+def _of_matrices(
+    path: Path, table: Array, wide: int, times: Path | None, asked: str | None, name: str,
+    order: str | Sequence[str] | None,
+) -> Poses:  # fmt: skip
     source = os.fspath(path)
     matrices, there = table[:, :12].reshape(-1, 3, 4), np.isfinite(table[:, :12]).all(axis=1)
     pose = np.hstack([matrices[:, :, 3], np.full((len(table), 4), np.nan)])
     pose[there, 3:] = quaternions(matrices[there, :, :3])
-    covariance = _behind(path, table, wide, table.shape[1] - wide)
+    covariance = _behind(path, table, wide, table.shape[1] - wide, order)
     if times is None:
         return Poses(source, np.arange(float(len(table))), pose, covariance, counted=True)
     stamps = seconds(os.fspath(times), read_table(times, 1)[:, 0], asked or "s", name, noted=not asked)
@@ -114,27 +120,25 @@ def _of_matrices(path: Path, table: Array, wide: int, times: Path | None, asked:
     return Poses(source, stamps, pose, covariance)
 
 
-def _behind(path: Path, table: Array, first: int, count: int) -> Array | None:
+def _behind(path: Path, table: Array, first: int, count: int, order: str | Sequence[str] | None) -> Array | None:
     """The covariances in `count` numbers behind the poses."""
-    rest = table[:, first : first + count]
     if not count:
         return None
-    if count == 21:
-        return triangle(os.fspath(path), rest, square_header(path))
-    size = _covariance_numbers[count]
-    return rest.reshape(-1, size, size) if count == size * size else from_upper(rest, size)
+    words = words_of(order, "qw first") or (square_order(path) if count == 21 else [])
+    turns = (3, 4, 5) if _covariance_numbers[count] == 6 else ()
+    return matrices_of(os.fspath(path), table[:, first : first + count], _covariance_numbers[count], words, turns)
 
 
 def from_files(
     estimate: Path | Sequence[Path], truth: Path | Sequence[Path], times: Path | None = None,
-    units: Mapping[str, str] | None = None, **options: Any,
+    units: Mapping[str, str] | None = None, order: str | Sequence[str] | None = None, **options: Any,
 ) -> dict[str, Any]:  # fmt: skip
     """Of files in any of the three formats, with the options of from_tum."""
     units = units_given(units, {"time": ["time"], "truth_time": ["time"]})
     files = paired(estimate, truth)
     options = square_options(files, options)
     pairs = [
-        (read_poses(e, times, units, "time"), read_poses(t, times, units, "time" if times else "truth_time"))
+        (read_poses(e, times, units, "time", order), read_poses(t, times, units, "time" if times else "truth_time"))
         for e, t in files
     ]
     return pose_arguments(pairs, **options)
@@ -152,12 +156,12 @@ def from_tum(
     planar: bool | None = None,
     body: Any = None,
     units: Mapping[str, str] | None = None,
+    order: str | Sequence[str] | None = None,
 ) -> dict[str, Any]:
     """Trajectories in TUM's format, with the covariance of each pose behind it.
 
     A line is ``time x y z qx qy qz qw`` (s, m), and in the estimate 36 further numbers, the covariance of
-    (translation, rotation) row by row (m, rad; the order of a ROS ``PoseWithCovariance``), or 21, its upper triangle,
-    or its lower one where more of these are covariances.
+    (translation, rotation) row by row (m, rad; the order of a ROS ``PoseWithCovariance``), or 21, a triangle;
     49 or 28 are that of the seven numbers of the pose as they stand in the line, which is on ``"R3 x SO3"``.
 
     What is found and not used (frames that seem to differ, a time offset, poses without a truth, components that are
@@ -191,6 +195,8 @@ def from_tum(
     units : dict
         Of `time` and `truth_time`, ``"s"``, ``"ms"``, ``"us"`` or ``"ns"``, where a file has another unit than its
         format: ``{"time": "ms"}``. Times that would be less than 1 µs apart are refused.
+    order : str, or list of str
+        Of the numbers of the estimate's covariance, as of :func:`from_table`; and ``"qw first"``, of its quaternion.
 
     Returns
     -------
@@ -206,7 +212,7 @@ def from_tum(
         unit of the times cannot be right.
     """
     return from_files(
-        estimate, truth, units=units,
+        estimate, truth, units=units, order=order,
         manifold=manifold, chart=chart, max_gap=max_gap, align=align, time_offset=time_offset, planar=planar, body=body,
     )  # fmt: skip
 

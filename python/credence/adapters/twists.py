@@ -9,11 +9,11 @@ import numpy as np
 
 from credence._errors import InputError
 from credence.adapters.frames import Poses
+from credence.adapters.missing import none_throughout
 from credence.adapters.poses import (
     added,
     in_order,
     interpolated,
-    placeholders,
     require_poses,
     say_independent,
     without_gaps,
@@ -48,7 +48,7 @@ def twist_arguments(
         runs.append(error._replace(pose=error.pose - at.pose))
     covariances = [run.covariance for run in runs if run.covariance is not None]
     still = np.all([np.ptp(estimate.pose, axis=0) == 0 for estimate, _ in pairs], axis=0)
-    none = placeholders(covariances) | still
+    none = none_throughout(covariances) | still
     if none.all():
         raise InputError(
             f"{runs[0].source}: all variances of its velocities are placeholders. Give a log that has them."
