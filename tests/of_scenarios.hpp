@@ -32,6 +32,8 @@ inline void recount(ScenarioResults& results) {
     for (std::size_t a = 0; a < results.arms.size(); ++a) {
         Totals& of_arm = results.arms[a].totals;
         of_arm.trials = std::move(totals[a]);
+        of_arm.diverged.clear();
+        if (of_arm.trials.diverged() > 0) of_arm.of_diverged();
         const std::int64_t counted = of_arm.trials.counted();
         for (SeriesTotals& series : of_arm.series)
             for (std::int64_t& covered : series.covered) covered = std::min(covered, counted);

@@ -5,6 +5,7 @@
 #include <credence/text.hpp>
 
 #include "files/hdf5/read.hpp"
+#include "files/results/links.hpp"
 
 #include <hdf5_hl.h>
 
@@ -141,6 +142,14 @@ inline void add_variable(const hdf5::Handle& dataset, const std::string& name, F
     add_attributes(dataset, "variable", found, facts);
 }
 
+/// The entries for an arm's group, or for that of its trials that did not diverge.
+inline void add_arm(const hdf5::Handle& group, Facts& facts) {
+    add_attributes(group, "arm", "", facts);
+    for (const std::string& name : hdf5::link_names(group))
+        if (name != without_diverged)
+            add_variable({H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), H5Dclose, name, ""}, name, facts);
+}
+
 /// The entries for a whole file, without /run.
 inline Facts found_in(const std::string& path) {
     Facts facts;
@@ -152,9 +161,8 @@ inline Facts found_in(const std::string& path) {
         add_attributes(scenario_group, "scenario", "", facts);
         for (const std::string& arm : hdf5::link_names(scenario_group)) {
             const hdf5::Handle group = hdf5::open_group(scenario_group, arm);
-            add_attributes(group, "arm", "", facts);
-            for (const std::string& name : hdf5::link_names(group))
-                add_variable({H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), H5Dclose, name, ""}, name, facts);
+            add_arm(group, facts);
+            if (hdf5::has_link(group, without_diverged)) add_arm(hdf5::open_group(group, without_diverged), facts);
         }
     }
     return facts;

@@ -98,6 +98,11 @@ inline Study made_up_study(const std::vector<DeformableSettings>& scenarios = {s
                 arm.nees[i] = i % 5 == 2 ? NAN : 0.125 * static_cast<double>(i);
         }
         recount(results);
+        for (ArmResults& arm : results.arms) {
+            arm.totals.diverged = arm.totals.series;
+            for (SeriesTotals& of_one : arm.totals.diverged)
+                for (std::int64_t& covered : of_one.covered) covered = std::min<std::int64_t>(covered, 1);
+        }
     }
     return study;
 }

@@ -45,6 +45,7 @@ bool same_columns(const ScenarioResults& a, const ScenarioResults& b, std::size_
 }
 
 bool same_series(const std::vector<SeriesTotals>& a, const std::vector<SeriesTotals>& b) {
+    if (a.size() != b.size()) return false;
     for (std::size_t f = 0; f < a.size(); ++f)
         if (!same_sums(a[f].sum, b[f].sum) || !same_sums(a[f].square_sum, b[f].square_sum) ||
             !same_bits(a[f].run_square_sum.parts(), b[f].run_square_sum.parts()) || a[f].covered != b[f].covered)
@@ -53,7 +54,8 @@ bool same_series(const std::vector<SeriesTotals>& a, const std::vector<SeriesTot
 }
 
 bool same_totals(const Totals& a, const Totals& b) {
-    return same_trials(a.trials, b.trials) && same_series(a.series, b.series) && a.cells == b.cells &&
+    return same_trials(a.trials, b.trials) && same_series(a.series, b.series) &&
+           same_series(a.diverged, b.diverged) && a.cells == b.cells &&
            same_sums(a.products.sum, b.products.sum) && same_sums(a.products.square_sum, b.products.square_sum) &&
            a.products.count == b.products.count;
 }

@@ -172,6 +172,10 @@ std::string sentence(const Attribution& attribution);
 /// the margin: `judge` says nothing by them.
 void leave_out_rounded(Evidence& evidence, const Limits& limits);
 
+/// Once all is said that the verdict's evidence says: makes groups, charts, innovations and biases those of all finite
+/// trials, without what rounding may have changed.
+void show_finite_trials(Evidence& evidence, const Limits& limits);
+
 /// When a finding was made, or along what: `steps 4 to 19`, `direction 0.71 x - 0.71 y`.
 std::string when_text(const Finding& finding);
 

@@ -47,6 +47,7 @@ struct GroupEvidence {
     int dimension = 0;
     std::vector<int> components;               ///< of the state
     Moments run;                               ///< of NEES/dim, averaged over each trial's steps
+    Moments without_diverged{};                ///< what the verdict has for `run`, if it is shown of all finite trials
     std::vector<Moments> step;                 ///< of NEES/dim
     BandedRatio anees;
     std::vector<Coverage> coverage;
@@ -187,6 +188,8 @@ struct Evidence {
     double epsilon = std::numeric_limits<double>::epsilon();  ///< relative spacing of the numbers of covariances
     SegmentEvidence segments;
     bool joint = true;                         ///< false: of a record without a covariance of the whole state
+    /// Means and series of all finite trials, where diverged ones are left out; else null.
+    std::shared_ptr<const Evidence> of_finite;
 
     std::int64_t failed_trials() const { return left_out + diverged; }
     /// Upper 95 % bound on the share of trials that fail or diverge [Clopper and Pearson 1934]; NaN of one log.

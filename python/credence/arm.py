@@ -65,7 +65,7 @@ class Arm(Variables):
     @property
     def counted_trials(self) -> int:
         """Trials over which the series run: all but those that failed (a covariance that is not positive definite,
-        values that are not finite) or diverged. The columns have the diverged ones, too."""
+        values that are not finite). The group ``without_diverged`` has the series without diverged ones."""
         return int(self.group.attrs["counted_trials"])
 
     @property

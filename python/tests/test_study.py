@@ -121,7 +121,7 @@ def test_failed_trials_are_nan_and_counted(tmp_path):
         arm = file["ekf-circle-ranged/greedy.ekf"]
         arm["status"][[1, 4]] = 2, 1
         arm["status_pose"][1] = 6
-        arm.attrs.modify("counted_trials", 598)
+        arm.attrs.modify("counted_trials", 599)
         for name in COLUMNS:
             arm[name][1] = arm[name].attrs["_FillValue"][0]
 
@@ -133,7 +133,7 @@ def test_failed_trials_are_nan_and_counted(tmp_path):
             assert other.mean(name, minus=arm).count == 599
         assert arm.status_pose[1] == 6
         assert arm.ended == {"completed": 598, "diverged": 1, "covariance_not_positive_definite": 1, "non_finite": 0}
-        assert (arm.trials, arm.counted_trials, arm.failed_trials) == (600, 598, 2)
+        assert (arm.trials, arm.counted_trials, arm.failed_trials) == (600, 599, 2)
         assert "600 trials, 2 failed" in repr(arm)
 
 

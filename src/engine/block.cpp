@@ -25,6 +25,10 @@ std::vector<double> added_up(const std::vector<double>& octets) {
     return totals;
 }
 
+SeriesSums added_up(const SeriesSums& octets) {
+    return {added_up(octets.sums), added_up(octets.square_sums), added_up(octets.run_square_sums), octets.covered};
+}
+
 /// Takes the columns out of their octets and fills those of failed trials.
 void store_columns(const std::vector<Column>& declared, const std::vector<double>& octets, std::size_t trials,
                    ArmBlock& arm) {
@@ -139,10 +143,8 @@ ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& column
     void* room = memory.room.of_size(simulation.workspace_size(a));
     simulation.simulate(a, octets.batch(root_seed, index * block_size, room));
     ArmBlock arm;
-    arm.sums = added_up(octets.sums);
-    arm.square_sums = added_up(octets.square_sums);
-    arm.run_square_sums = added_up(octets.run_square_sums);
-    arm.covered = octets.covered;
+    static_cast<SeriesSums&>(arm) = added_up(octets.counted);
+    arm.diverged = added_up(octets.diverged);
     store_columns(columns, octets.columns, octets.trials, arm);
     const std::vector<Status> statuses = statuses_of(columns, arm, octets.trials);
     if (distribution_counted(shape.poses - 1))

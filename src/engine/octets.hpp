@@ -33,17 +33,30 @@ private:
     std::size_t size_ = 0;
 };
 
+/// Running sums by eight, of the sizes of SeriesSums times eight but for `covered`.
+inline void clear_sums(SeriesSums& of, std::size_t all_series, std::size_t groups, std::size_t steps) {
+    of.sums.assign(all_series * steps * octet, 0);
+    of.square_sums.assign(of.sums.size(), 0);
+    of.run_square_sums.assign(all_series * octet, 0);
+    of.covered.assign(groups * steps * coverage_level_count, 0);
+}
+
+inline RunningSums pointers_to(SeriesSums& of) {
+    return {of.sums.data(), of.square_sums.data(), of.run_square_sums.data(), of.covered.data()};
+}
+
 /// What a unit fills, eight trials next to each other. Kept from block to block; what a unit adds to begins at 0.
 struct Octets {
+    SeriesSums counted, diverged;  ///< the second is empty until a trial diverges
     std::size_t trials = 0, padded = 0, steps = 0, components = 0, moment_count = 0;
     bool detail = false;
-    std::vector<double> columns, sums, square_sums, run_square_sums, nees;
-    std::vector<std::int32_t> covered;
+    std::size_t all_series = 0, groups = 0;
+    std::vector<double> columns, nees;
     std::vector<double> errors, moments, product_sums, product_square_sums, product_counts;
 
     void prepare(const SimulationShape& shape, std::size_t count, bool detailed) {
-        const auto all_series = static_cast<std::size_t>(shape.series_count);
-        const auto blocks = static_cast<std::size_t>(shape.group_count);
+        all_series = static_cast<std::size_t>(shape.series_count);
+        groups = static_cast<std::size_t>(shape.group_count);
         trials = count;
         padded = (count + octet - 1) / octet * octet;
         steps = static_cast<std::size_t>(shape.poses - 1);
@@ -51,10 +64,8 @@ struct Octets {
         detail = detailed;
         columns.resize(padded * static_cast<std::size_t>(shape.column_count));
         nees.resize(steps * padded);
-        sums.assign(all_series * steps * octet, 0);
-        square_sums.assign(sums.size(), 0);
-        run_square_sums.assign(all_series * octet, 0);
-        covered.assign(blocks * steps * coverage_level_count, 0);
+        clear_sums(counted, all_series, groups, steps);
+        diverged = {};
         if (!detail) {
             errors = moments = std::vector<double>();  // much room, and seldom wanted; {} would keep it
             return;
@@ -66,13 +77,18 @@ struct Octets {
             products->assign(static_cast<std::size_t>(lag_count(shape.poses)) * octet, 0);
     }
 
+    /// Room for the sums of diverged trials, made with the first of them.
+    static RunningSums of_diverged(void* owner) {
+        Octets& own = *static_cast<Octets*>(owner);
+        if (own.diverged.sums.empty()) clear_sums(own.diverged, own.all_series, own.groups, own.steps);
+        return pointers_to(own.diverged);
+    }
+
     Batch batch(std::uint64_t root_seed, std::int64_t first_trial, void* workspace) {
-        Batch batch{root_seed, first_trial, static_cast<int>(trials)};
+        Batch batch{pointers_to(counted), root_seed, first_trial, static_cast<int>(trials)};
+        batch.of_diverged = of_diverged;
+        batch.owner = this;
         batch.columns = columns.data();
-        batch.sums = sums.data();
-        batch.square_sums = square_sums.data();
-        batch.run_square_sums = run_square_sums.data();
-        batch.covered = covered.data();
         batch.nees = nees.data();
         batch.errors = detail ? errors.data() : nullptr;
         batch.moments = detail ? moments.data() : nullptr;

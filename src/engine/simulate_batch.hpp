@@ -56,7 +56,7 @@ struct Unfolded {
 
 /// Adds one series's values, those of the packs start, start + stride ... of `octets` octets, to its running sums.
 template <class Real, class Octets>
-void fold_series(const Unfolded<Real>& unfolded, int f, int start, Octets octets, int steps, const Batch& batch) {
+void fold_series(const Unfolded<Real>& unfolded, int f, int start, Octets octets, int steps, const RunningSums& batch) {
     constexpr int stride = Unfolded<Real>::packs_per_octet;
     const int place = start * lanes<Real>;
     Real run_sum[fold_octets];
@@ -85,7 +85,7 @@ void fold_series(const Unfolded<Real>& unfolded, int f, int start, Octets octets
 
 /// Counts the trials whose NEES of block b lies below each coverage bound.
 template <class Real>
-void fold_coverage(const Unfolded<Real>& unfolded, int b, int steps, const double* bounds, const Batch& batch) {
+void fold_coverage(const Unfolded<Real>& unfolded, int b, int steps, const double* bounds, const RunningSums& batch) {
     for (int cell = b * steps; cell < (b + 1) * steps; ++cell) {
         int count[coverage_level_count] = {};
         for (int pack = 0; pack < unfolded.packs; ++pack) {
@@ -100,7 +100,7 @@ void fold_coverage(const Unfolded<Real>& unfolded, int b, int steps, const doubl
 
 /// Adds what is unfolded to the running sums, in trial order. Trials that do not count add zeros.
 template <class Real>
-void fold(Unfolded<Real>& unfolded, const CommonView& problem, const Batch& batch) {
+void fold(Unfolded<Real>& unfolded, const CommonView& problem, const RunningSums& batch) {
     const int steps = problem.poses - 1;
     for (int start = 0; start < Unfolded<Real>::packs_per_octet; ++start)
         for (int f = 0; f < problem.series_count; ++f)
@@ -111,6 +111,20 @@ void fold(Unfolded<Real>& unfolded, const CommonView& problem, const Batch& batc
     for (int b = 0; b < problem.group_count; ++b)
         fold_coverage(unfolded, b, steps, problem.coverage_bounds + b * coverage_level_count, batch);
     unfolded.packs = 0;
+}
+
+/// Adds the diverged trials of the pack from trial `first` of the batch on to running sums of their own. The packs of
+/// its octet before it lie before it, too.
+template <class Real>
+[[gnu::cold, gnu::noinline]] void fold_diverged(Real* all_series, Mask<Real> diverged, int first,
+                                                const CommonView& problem, const Batch& batch) {
+    Unfolded<Real> of_octet(all_series, problem);
+    for (int before = first % octet / lanes<Real>; before > 0; --before) {
+        of_octet.all_series -= of_octet.cells;
+        of_octet.keep(Mask<Real>{});
+    }
+    of_octet.keep(diverged);
+    fold(of_octet, problem, batch.of_diverged(batch.owner));
 }
 
 /// The lanes 0 ... count - 1.
@@ -167,6 +181,8 @@ struct BatchOf {
             for (int c = 0; c < count; ++c) store(columns[c], to + c * octet);
             copy_out(all_series, problem.poses - 1, i, batch, batch.nees);
             details.keep(all_series, counts, i, batch);
+            if (const Mask<Real> diverged = both(columns[count - 2] == Real(1), place.there); any(diverged))
+                fold_diverged(all_series, diverged, i, problem, batch);
             unfolded.keep(counts);
             if (unfolded.full() || i + lanes<Real> >= batch.trials) fold(unfolded, problem, batch);
         }

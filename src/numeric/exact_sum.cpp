@@ -28,18 +28,11 @@ void ExactSum::add(double value) {
     if (value != 0) expansion_.push_back(value);
 }
 
-void ExactSum::add(const ExactSum& other) {
+void ExactSum::add(const ExactSum& other, int sign) {
     finite_ = finite_ && other.finite_;
     if (!finite_) return;
     const std::vector<double> parts = other.expansion_;  // a copy: other may be this
-    for (const double part : parts) add(part);
-}
-
-void ExactSum::subtract(const ExactSum& other) {
-    finite_ = finite_ && other.finite_;
-    if (!finite_) return;
-    const std::vector<double> parts = other.expansion_;  // a copy: other may be this
-    for (const double part : parts) add(-part);
+    for (const double part : parts) add(sign * part);
 }
 
 double ExactSum::rounded() const {

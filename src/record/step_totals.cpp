@@ -59,7 +59,7 @@ double RecordTotals::nees_at(std::size_t k) {
 }
 
 void RecordTotals::add_totals() {
-    for (std::size_t f = 0; f < all_series_.list.size(); ++f) add_series(f);
+    add_all_series(arm().totals.series);
     add_distribution();
     keep_largest_nis();
     for (std::size_t lag = 0; lag < products_.sum.size(); ++lag) {
@@ -69,8 +69,11 @@ void RecordTotals::add_totals() {
     }
 }
 
-void RecordTotals::add_series(std::size_t f) {
-    SeriesTotals& totals = arm().totals.series[f];
+void RecordTotals::add_all_series(std::vector<SeriesTotals>& to) {
+    for (std::size_t f = 0; f < to.size(); ++f) add_series(f, to[f]);
+}
+
+void RecordTotals::add_series(std::size_t f, SeriesTotals& totals) {
     const Series& declared = all_series_.list[f];
     const bool of_innovations = declared.role == SeriesRole::nis || declared.role == SeriesRole::rows;
     double run = 0, count = 0;
@@ -83,7 +86,7 @@ void RecordTotals::add_series(std::size_t f) {
         const std::size_t kept = kept_.place(k);
         totals.sum[kept].add(value);
         if (!declared.integer) totals.square_sum[kept].add(value * value);
-        if (f < shape_.groups.size()) add_coverage(f, k, f == 0 ? nees_at(k) : value);
+        if (f < shape_.groups.size()) add_coverage(f, k, f == 0 ? nees_at(k) : value, totals);
         if (!totals.present.empty()) ++totals.present[kept];
         if (f == 0 && !dimensions_.empty()) totals.dimensions[kept] += dimensions_[k];
     }
@@ -94,10 +97,10 @@ void RecordTotals::add_series(std::size_t f) {
     ++totals.runs;
 }
 
-void RecordTotals::add_coverage(std::size_t f, std::size_t k, double value) {
+void RecordTotals::add_coverage(std::size_t f, std::size_t k, double value, SeriesTotals& totals) {
     const double* bound = bounds(f, k);
     for (std::size_t l = 0; l < coverage_level_count; ++l)
-        arm().totals.series[f].covered[kept_.place(k) * coverage_level_count + l] += value < bound[l];
+        totals.covered[kept_.place(k) * coverage_level_count + l] += value < bound[l];
 }
 
 /// The bounds [levels] of a group's NEES at a step.

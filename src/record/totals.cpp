@@ -154,12 +154,14 @@ void RecordTotals::end_trial(std::int64_t trial) {
         const std::vector<double> moments = moments_.moments();
         std::copy(moments.begin(), moments.end(), arm().moments.begin() + trial * std::ssize(moments));
     }
-    if (diverged_ == DivergedTrials::counted ? !failed(status_) : counts(status_)) {
+    if (counts(status_) || (status_ == Status::diverged && diverged_ == DivergedTrials::counted)) {
         gaps_.add(trial, shape_.steps_of(trial), present_, [this](std::size_t k) { return series(0, k) / shape_.n; });
         add_totals();
         if (planner_ != nullptr)
             planner_->add(trial, present_, all_series_.list,
                           [this](std::size_t f, std::size_t k) { return series(f, k); });
+    } else if (status_ == Status::diverged) {
+        add_all_series(arm().totals.of_diverged());
     }
     if (!failed(status_)) return;
     if (trial >= record_.results.detailed()) return;

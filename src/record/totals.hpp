@@ -68,8 +68,9 @@ private:
     void keep_curves(std::size_t trial);
     void add_columns(std::int64_t trial);
     void add_totals();
-    void add_series(std::size_t f);
-    void add_coverage(std::size_t f, std::size_t k, double value);
+    void add_all_series(std::vector<SeriesTotals>& to);
+    void add_series(std::size_t f, SeriesTotals& totals);
+    void add_coverage(std::size_t f, std::size_t k, double value, SeriesTotals& totals);
     void add_distribution();
     void keep_largest_nis();
     void set_dimension(std::size_t k);

@@ -162,7 +162,7 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     arm.gaps = record.gaps;
     arm.curves = std::move(record.curves);
     if (arm.evidence.segments.count) {
-        set_means(*record.segments.results, arm);
+        if (!arm.evidence.of_finite) set_means(*record.segments.results, arm);
         if (arm.evidence.of_few_runs())
             report.not_judged.push_back(
                 "What is drawn once in a run, such as a constant bias, the map or the start, is seen once in each: so "
@@ -184,6 +184,7 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     attribute_errors(record, arm);
     name_absent_groups(arm.evidence, limits, report.not_judged);
     try_other_charts(record, arm);
+    show_finite_trials(arm.evidence, limits);
     return report;
 }
 

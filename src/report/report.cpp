@@ -107,9 +107,11 @@ Report make_report(const Study& study, const Limits& limits) {
     for (const ScenarioResults& results : study.scenarios) {
         report.scenarios.push_back(results.scenario);
         const WithTotals with_totals(results);
-        for (const ArmResults& arm : (*with_totals).arms)
+        for (const ArmResults& arm : (*with_totals).arms) {
             report.arms.push_back(
                 report_arm(*with_totals, arm, evidence_of(*with_totals, arm), study.root_seed, limits));
+            show_finite_trials(report.arms.back().evidence, limits);
+        }
     }
     return report;
 }

@@ -59,7 +59,10 @@ std::string diverged_text(const Evidence& evidence) {
     std::vector<std::string> trials;
     for (const WorstTrial& one : evidence.diverged_trials)
         trials.push_back(std::to_string(one.trial) + " (most at step " + std::to_string(one.step) + ")");
-    return "left out of the verdict, kept in the columns" +
+    const Moments none, &without = evidence.groups.empty() ? none : evidence.groups.front().without_diverged;
+    return "left out of the verdict" +
+           (without.count > 0 ? ", which has NEES/dim " + with_interval(without.mean, t_interval(without)) : "") +
+           ", kept in means and series" +
            (trials.empty() ? "" : "; trial" + std::string(trials.size() == 1 ? " " : "s ") + joined(trials));
 }
 

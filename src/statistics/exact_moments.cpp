@@ -30,16 +30,10 @@ double spread_of(const ExactMoments& values) {
 
 }  // namespace
 
-void ExactMoments::add(const ExactMoments& other) {
-    count += other.count;
-    sum.add(other.sum);
-    square_sum.add(other.square_sum);
-}
-
-void ExactMoments::subtract(const ExactMoments& other) {
-    count -= other.count;
-    sum.subtract(other.sum);
-    square_sum.subtract(other.square_sum);
+void ExactMoments::add(const ExactMoments& other, int sign) {
+    count += sign * other.count;
+    sum.add(other.sum, sign);
+    square_sum.add(other.square_sum, sign);
 }
 
 ExactMoments exact_moments(const std::vector<double>& values) {
@@ -72,21 +66,15 @@ Moments moments_of(const ExactMoments& values) {
     return {n, mean, std::sqrt(variance), std::sqrt(variance / n)};
 }
 
-void DifferenceTotals::add(const DifferenceTotals& other) {
-    difference.add(other.difference);
-    below += other.below;
-    above += other.above;
-}
-
-void DifferenceTotals::subtract(const DifferenceTotals& other) {
-    difference.subtract(other.difference);
-    below -= other.below;
-    above -= other.above;
+void DifferenceTotals::add(const DifferenceTotals& other, int sign) {
+    difference.add(other.difference, sign);
+    below += sign * other.below;
+    above += sign * other.above;
 }
 
 DifferenceTotals DifferenceTotals::reversed() const {
     DifferenceTotals other{{difference.count, {}, difference.square_sum}, above, below};
-    other.difference.sum.subtract(difference.sum);
+    other.difference.sum.add(difference.sum, -1);
     return other;
 }
 

@@ -11,7 +11,7 @@ namespace credence {
 
 namespace {
 
-void add_figure(SeriesTotals& totals, const Series& series, const ArmBlock& from, std::size_t f, std::size_t steps,
+void add_figure(SeriesTotals& totals, const Series& series, const SeriesSums& from, std::size_t f, std::size_t steps,
                 double sign) {
     totals.run_square_sum.add(sign * from.run_square_sums[f]);
     for (std::size_t k = 0; k < steps; ++k) {
@@ -22,6 +22,17 @@ void add_figure(SeriesTotals& totals, const Series& series, const ArmBlock& from
 
 void add_coverage(SeriesTotals& totals, const std::int32_t* covered, std::int64_t sign) {
     for (std::size_t i = 0; i < totals.covered.size(); ++i) totals.covered[i] += sign * covered[i];
+}
+
+void add_series(std::vector<SeriesTotals>& to, const ScenarioResults& results, const SeriesSums& from,
+                std::int64_t sign) {
+    const std::int32_t* covered = from.covered.data();
+    for (std::size_t f = 0; f < to.size(); ++f) {
+        add_figure(to[f], results.all_series[f], from, f, static_cast<std::size_t>(results.steps()),
+                   static_cast<double>(sign));
+        add_coverage(to[f], covered, sign);
+        covered += to[f].covered.size();
+    }
 }
 
 void add_cells(Totals& to, const ArmBlock& from, std::size_t trials, std::int64_t sign) {
@@ -42,16 +53,11 @@ void add_products(ProductTotals& to, const ArmBlock& from, double sign) {
 
 void add_scaled_totals(ScenarioResults& results, const Block& block, int sign) {
     load_totals(results);
-    const std::size_t steps = static_cast<std::size_t>(results.steps());
     for (std::size_t a = 0; a < results.arms.size(); ++a) {
         const ArmBlock& from = block.arms[a];
         Totals& to = results.arms[a].totals;
-        const std::int32_t* covered = from.covered.data();
-        for (std::size_t f = 0; f < results.all_series.size(); ++f) {
-            add_figure(to.series[f], results.all_series[f], from, f, steps, sign);
-            add_coverage(to.series[f], covered, sign);
-            covered += to.series[f].covered.size();
-        }
+        add_series(to.series, results, from, sign);
+        if (!from.diverged.sums.empty()) add_series(to.of_diverged(), results, from.diverged, sign);
         add_cells(to, from, static_cast<std::size_t>(block.trials), sign);
         add_products(to.products, from, sign);
     }
@@ -113,7 +119,11 @@ void add_totals(ScenarioResults& results, const Block& block) {
 void remove_totals(ScenarioResults& results, const Block& block) {
     add_scaled_totals(results, block, -1);
     const std::vector<TrialTotals> of_trials = trial_totals_of(results, block);
-    for (std::size_t a = 0; a < of_trials.size(); ++a) results.arms[a].totals.trials.subtract(of_trials[a]);
+    for (std::size_t a = 0; a < of_trials.size(); ++a) {
+        Totals& totals = results.arms[a].totals;
+        totals.trials.add(of_trials[a], -1);
+        if (totals.trials.diverged() == 0) totals.diverged.clear();
+    }
 }
 
 void store_columns(ScenarioResults& results, const Block& block) {

@@ -25,6 +25,7 @@ void clear_totals(ScenarioResults& results) {
     const auto steps = static_cast<std::size_t>(results.steps()), lags = lags_of(results);
     for (ArmResults& arm : results.arms) {
         arm.totals.series.clear();
+        arm.totals.diverged.clear();
         for (const Series& series : results.all_series) arm.totals.series.push_back(no_totals(series, steps));
         if (distribution_counted(results.steps())) arm.totals.cells.assign(steps * distribution_cells, 0);
         arm.totals.products = {std::vector<ExactSum>(lags), std::vector<ExactSum>(lags),
@@ -85,6 +86,7 @@ void drop_totals(ScenarioResults& results) {
     const auto free = [](auto& values) { values = std::remove_reference_t<decltype(values)>(); };  // {} would not
     for (ArmResults& arm : results.arms) {
         free(arm.totals.series);
+        free(arm.totals.diverged);
         free(arm.totals.cells);
         free(arm.totals.products);
         visit_details(results, [&](auto& values, std::int64_t) { free(values); }, arm);

@@ -3,7 +3,6 @@
 #include "totals/visit_totals.hpp"
 
 #include <algorithm>
-#include <functional>
 
 namespace credence {
 
@@ -37,19 +36,8 @@ DifferenceTotals column_differences(const ScenarioResults& results, const ArmRes
                                : b.totals.trials.differences[place(a)][column].reversed();
 }
 
-namespace {
-
-void add(ExactSum& to, const ExactSum& from) { to.add(from); }
-void add(std::vector<ExactSum>& to, const std::vector<ExactSum>& from) {
-    for (std::size_t i = 0; i < to.size(); ++i) to[i].add(from[i]);
-}
-void add(std::vector<std::int64_t>& to, const std::vector<std::int64_t>& from) {
-    std::transform(to.begin(), to.end(), from.begin(), to.begin(), std::plus<>());
-}
-
-}  // namespace
-
 void add_totals(ArmResults& to, const ArmResults& from) {
+    if (!from.totals.diverged.empty()) to.totals.of_diverged();
     to.totals.trials.add(from.totals.trials);
     visit_totals([](auto& sum, const auto& other) { add(sum, other); }, to.totals, from.totals);
 }

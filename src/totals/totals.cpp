@@ -1,10 +1,10 @@
 #include <credence/detail/totals.hpp>
 
 #include "base/nan.hpp"
+#include "totals/visit_totals.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numeric>
 
 namespace credence {
@@ -19,44 +19,54 @@ std::vector<double> values_of(const double* column, const double* statuses, std:
     return values;
 }
 
-template <class T>
-void add_each(std::vector<T>& to, const std::vector<T>& from) {
-    for (std::size_t i = 0; i < to.size(); ++i) to[i].add(from[i]);
-}
-
-template <class T>
-void subtract_each(std::vector<T>& to, const std::vector<T>& from) {
-    for (std::size_t i = 0; i < to.size(); ++i) to[i].subtract(from[i]);
-}
-
 }  // namespace
 
-void TrialTotals::add(const TrialTotals& other) {
-    std::transform(statuses.begin(), statuses.end(), other.statuses.begin(), statuses.begin(), std::plus<>());
-    add_each(columns, other.columns);
-    for (std::size_t a = 0; a < differences.size(); ++a) add_each(differences[a], other.differences[a]);
+void SeriesTotals::add(const SeriesTotals& other, int sign) {
+    credence::add(sum, other.sum, sign);
+    credence::add(square_sum, other.square_sum, sign);
+    credence::add(run_square_sum, other.run_square_sum, sign);
+    if (run_sum) credence::add(*run_sum, *other.run_sum, sign);
+    credence::add(covered, other.covered, sign);
+    credence::add(present, other.present, sign);
+    credence::add(runs, other.runs, sign);
+    credence::add(dimensions, other.dimensions, sign);
 }
 
-void TrialTotals::subtract(const TrialTotals& other) {
-    std::transform(statuses.begin(), statuses.end(), other.statuses.begin(), statuses.begin(), std::minus<>());
-    subtract_each(columns, other.columns);
-    for (std::size_t a = 0; a < differences.size(); ++a) subtract_each(differences[a], other.differences[a]);
+std::vector<SeriesTotals>& Totals::of_diverged() {
+    const auto none = [](const auto& parts) { return std::remove_cvref_t<decltype(parts)>(parts.size()); };
+    if (diverged.empty())
+        for (const SeriesTotals& of : series)
+            diverged.push_back({none(of.sum), none(of.square_sum), {},
+                                of.run_sum ? std::optional(ExactSum()) : std::nullopt, none(of.covered),
+                                none(of.present), 0, none(of.dimensions)});
+    return diverged;
+}
+
+std::vector<SeriesTotals> Totals::of_finite() const {
+    std::vector<SeriesTotals> all = series;
+    for (std::size_t f = 0; f < diverged.size(); ++f) all[f].add(diverged[f]);
+    return all;
+}
+
+void TrialTotals::add(const TrialTotals& other, int sign) {
+    credence::add(statuses, other.statuses, sign);
+    credence::add(columns, other.columns, sign);
+    credence::add(differences, other.differences, sign);
 }
 
 std::int64_t TrialTotals::trials() const {
     return std::accumulate(statuses.begin(), statuses.end(), std::int64_t{0});
 }
 
-std::int64_t TrialTotals::counted() const {
-    return statuses[static_cast<std::size_t>(Status::completed)] + (diverged_count ? diverged() : 0);
-}
+std::int64_t TrialTotals::counted() const { return finite() - (diverged_count ? 0 : diverged()); }
 
 std::int64_t TrialTotals::diverged() const { return statuses[static_cast<std::size_t>(Status::diverged)]; }
+std::int64_t TrialTotals::finite() const { return statuses[static_cast<std::size_t>(Status::completed)] + diverged(); }
 
 bool is_reported(const Column& column) { return column.type != ColumnType::status && column.name != "status_pose"; }
 
 const char* problem_of(const TrialTotals& all) {
-    const std::int64_t with_columns = all.counted() + all.diverged();
+    const std::int64_t with_columns = all.finite();
     const auto none_of = [](std::int64_t count, std::int64_t most) { return count < 0 || count > most; };
     for (const std::int64_t trials : all.statuses)
         if (trials < 0) return "a number of trials is below 0";

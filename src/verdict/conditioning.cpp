@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <credence/detail/exact_sum.hpp>
+#include <utility>
 #include <vector>
 
 #include "base/nan.hpp"
@@ -41,7 +42,7 @@ void leave_out(BandedRatio& ratio) {
 /// All numbers of a group that rest on its NEES.
 void leave_out(GroupEvidence& group) {
     const Moments unknown{0, nan, nan, nan};
-    group.run = unknown;
+    group.run = group.without_diverged = unknown;
     std::fill(group.step.begin(), group.step.end(), unknown);
     leave_out(group.anees);
     set_unknown(group.variance_ratio);
@@ -82,6 +83,18 @@ void leave_out_rounded(Evidence& evidence, const Limits& limits) {
         if (&group == &evidence.groups.front()) leave_out_whole_state(evidence);
         leave_out(group);
     }
+}
+
+void show_finite_trials(Evidence& evidence, const Limits& limits) {
+    if (!evidence.of_finite) return;
+    const Evidence& all = *evidence.of_finite;
+    const auto left_out = std::exchange(evidence.groups, all.groups);
+    for (std::size_t g = 0; g < left_out.size(); ++g) evidence.groups[g].without_diverged = left_out[g].run;
+    std::ranges::copy(all.charts, evidence.charts.begin());
+    evidence.nis = all.nis;
+    evidence.bias = all.bias;
+    evidence.of_finite.reset();
+    leave_out_rounded(evidence, limits);
 }
 
 }  // namespace credence

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace credence {
 
@@ -246,33 +247,12 @@ std::vector<WorstTrial> set_diverged_aside(const ScenarioResults& results, ArmRe
     return diverged;
 }
 
-/// Where more than half of the trials diverged, the filter as a whole is judged, by the detailed trials: the totals are
-/// of the others alone, and the whole state is what the details have by step.
-void judge_diverged(const ScenarioResults& results, const ArmResults& arm, Evidence& evidence) {
-    if (!evidence.moments) return;
-    const TrialMoments& trials = *evidence.moments;
-    evidence.trials += evidence.diverged;
-    evidence.diverged_are_judged = true;
-    for (BiasEvidence& bias : evidence.bias) bias.mean_square.clear();  // its P is that of the others
-    for (int g = 0; g < trials.groups; ++g)
-        evidence.groups[static_cast<std::size_t>(g)].run =
-            moments_of_trials(trials, [&](std::size_t i) { return trials.X(i, g); });
-    for (int j = 0; j < trials.components; ++j)
-        evidence.bias[static_cast<std::size_t>(j)].run =
-            moments_of_trials(trials, [&](std::size_t i) { return trials.z(i, j); });
-    GroupEvidence& state = evidence.groups.front();
-    const std::size_t steps = state.step.size();
-    std::vector<double> sums;
-    state.anees = {};
-    for (std::size_t k = 0; k < steps; ++k) {
-        std::vector<double> ratios;
-        for (std::size_t at = k; at < arm.nees.size(); at += steps)
-            if (!std::isnan(arm.nees[at])) ratios.push_back(arm.nees[at] / results.state_size());
-        state.step[k] = moments_of(exact_moments(ratios));
-        state.anees.degrees.push_back(state.step[k].count * state.dimension);
-        sums.push_back(state.step[k].mean * state.anees.degrees.back());
-    }
-    fill_bands(sums, state.anees);
+/// Trials whose NEES at a step is in the distribution: cells are without diverged trials, whatever the series are.
+double distribution_count(const Totals& totals, std::size_t k) {
+    if (!totals.distribution_distance.empty() || totals.cells.empty())
+        return static_cast<double>(totals.counted_at(totals.series.front(), k));
+    const auto first = totals.cells.begin() + static_cast<std::ptrdiff_t>(k * distribution_cells);
+    return static_cast<double>(std::accumulate(first, first + distribution_cells, std::int64_t{0}));
 }
 
 DistributionEvidence distribution_evidence(const ScenarioResults& results, const ArmResults& arm) {
@@ -284,7 +264,7 @@ DistributionEvidence distribution_evidence(const ScenarioResults& results, const
             : arm.totals.cells.empty()
                 ? nan
                 : cell_distance(arm.totals.cells.data() + k * distribution_cells, distribution_cells));
-        const double count = static_cast<double>(arm.totals.counted_at(arm.totals.series.front(), k));
+        const double count = distribution_count(arm.totals, k);
         evidence.p.push_back(count < 1 || std::isnan(evidence.distance.back())
                                  ? nan
                                  : kolmogorov_smirnov_p(evidence.distance.back(), count));
@@ -337,7 +317,8 @@ bool Whiteness::known() const { return std::isfinite(scaled); }
 
 namespace {
 
-Evidence evidence_of_counted(const ScenarioResults& results, const ArmResults& arm) {
+/// What totals by step say, and the moments of the detailed trials.
+Evidence means_and_series(const ScenarioResults& results, const ArmResults& arm) {
     Evidence evidence;
     count_trials(results, arm, evidence);
     evidence.steps = results.steps();
@@ -352,6 +333,15 @@ Evidence evidence_of_counted(const ScenarioResults& results, const ArmResults& a
             if (NisEvidence nis = nis_evidence(results, arm, f); nis.degrees > 0)
                 evidence.nis.push_back(std::move(nis));
     }
+    evidence.moments = trial_moments(results, arm, evidence.groups);
+    add_squares(evidence);
+    evidence.epsilon = results.epsilon;
+    add_rounding(arm, evidence);
+    return evidence;
+}
+
+Evidence evidence_of_counted(const ScenarioResults& results, const ArmResults& arm) {
+    Evidence evidence = means_and_series(results, arm);
     evidence.whiteness = whiteness_evidence(arm.totals.products, evidence.nis.empty() ? 1 : evidence.nis.front().ratio,
                                            correlated_trials(results, arm));
     evidence.distribution = distribution_evidence(results, arm);
@@ -359,10 +349,6 @@ Evidence evidence_of_counted(const ScenarioResults& results, const ArmResults& a
     evidence.worst = worst_trials(results, arm);
     add_error_sizes(results, arm, evidence.bias);
     evidence.quintiles = quintiles_by_size(results, arm);
-    evidence.moments = trial_moments(results, arm, evidence.groups);
-    add_squares(evidence);
-    evidence.epsilon = results.epsilon;
-    add_rounding(arm, evidence);
     return evidence;
 }
 
@@ -371,15 +357,14 @@ Evidence evidence_of_counted(const ScenarioResults& results, const ArmResults& a
 Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     const TrialTotals& trials = arm.totals.trials;
     if (trials.diverged() == 0 || trials.diverged_count) return evidence_of_counted(results, arm);
-    if (trials.diverged() > trials.counted()) {
-        Evidence evidence = evidence_of_counted(results, arm);
-        judge_diverged(results, arm, evidence);
-        return evidence;
-    }
-    ArmResults others = arm;
+    ArmResults all = arm, others = arm;
+    all.totals.series = arm.totals.of_finite();
+    all.totals.trials.diverged_count = true;
+    if (trials.diverged() > trials.counted()) return evidence_of_counted(results, all);
     const std::vector<WorstTrial> diverged = set_diverged_aside(results, others);
     Evidence evidence = evidence_of_counted(results, others);
     evidence.diverged_trials = diverged;
+    evidence.of_finite = std::make_shared<const Evidence>(means_and_series(results, all));
     if (evidence.bias.size() == static_cast<std::size_t>(results.state_size())) add_largest_errors(arm, evidence.bias);
     return evidence;
 }

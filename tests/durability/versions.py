@@ -15,7 +15,7 @@ from harness import HERE, Bench, Failed, arguments, finish
 
 WORLD = HERE.parent / "fuzz" / "journal.ini"
 KEEPS = "trials", "aggregates"
-OWN = 9  # version of this program's journals
+OWN = 10  # version of this program's journals
 SCHEMA = 5
 MORE = 600  # trials: three blocks
 LATER = ((2, 0), (-2, 0), (0, 1), (0, -1), (2, 1))  # a journal's version and its schema's, over this program's

@@ -14,10 +14,14 @@ namespace {
 
 bool same_bits(const Block& a, const Block& b) {
     bool same = a.index == b.index && a.trials == b.trials && a.arms.size() == b.arms.size();
+    const auto same_sums = [](const SeriesSums& x, const SeriesSums& y) {
+        return test::same_bits(x.sums, y.sums) && test::same_bits(x.square_sums, y.square_sums) &&
+               test::same_bits(x.run_square_sums, y.run_square_sums) && x.covered == y.covered;
+    };
     for (std::size_t i = 0; same && i < a.arms.size(); ++i) {
         const ArmBlock &x = a.arms[i], &y = b.arms[i];
-        same = test::same_bits(x.columns, y.columns) && test::same_bits(x.sums, y.sums) && x.counted == y.counted &&
-               test::same_bits(x.square_sums, y.square_sums) && test::same_bits(x.run_square_sums, y.run_square_sums);
+        same = test::same_bits(x.columns, y.columns) && same_sums(x, y) && same_sums(x.diverged, y.diverged) &&
+               x.counted == y.counted;
     }
     return same;
 }
@@ -37,7 +41,7 @@ std::vector<Settings> worlds() {
 
 /// A world in which some trials fail, some diverged and some are neither: the heading is unknown after a step.
 const Settings fragile{{"noise.heading", "1e9"}, {"filter.covariance", "10"}, {"arms.controllers", "fixed"},
-                       {"scenario.poses", "3"}};
+                       {"scenario.poses", "4"}};
 
 /// Value of a column in a block's arm.
 double column(const Block& block, std::size_t arm, int index, int trial) {
@@ -152,44 +156,49 @@ TEST_CASE("block: sums are folded in eight, in trial order, over the trials that
         const Problem problem(scenario);
         const int steps = scenario.poses - 1, figures = problem.view().series_count;
         const Block block = run_block(problem, 3, 0, trials);
-        std::array<Eigen::MatrixXd, 8> sums, squares;  // by column as the block by row
-        std::array<Eigen::VectorXd, 8> run_squares;
-        sums.fill(Eigen::MatrixXd::Zero(steps, figures));
-        squares.fill(Eigen::MatrixXd::Zero(steps, figures));
-        run_squares.fill(Eigen::VectorXd::Zero(figures));
-        int counted = 0;
-        for (int trial = 0; trial < trials; ++trial) {
-            const Run run =
-                run_arm(scenario, Controller::fixed, keyed_noise(scenario, 3, static_cast<std::uint64_t>(trial)));
-            const bool trial_failed = run.columns[column_status] >= 2;
-            CHECK(std::isnan(column(block, 0, column_trace_P, trial)) == trial_failed);
-            CHECK((column(block, 0, column_unseen, trial) == -1) == trial_failed);
-            if (run.columns[column_status] != 0) continue;
-            ++counted;
-            const std::size_t eighth = static_cast<std::size_t>(trial) % 8;
-            for (int f = 0; f < figures; ++f) {
-                double run_sum = 0;
-                for (int k = 0; k < steps; ++k) {
-                    const double value = run.figures(f, k);
-                    sums[eighth](k, f) += value;
-                    squares[eighth](k, f) = std::fma(value, value, squares[eighth](k, f));
-                    run_sum += value;
+        for (const int status : {0, 1}) {  // completed trials, and diverged ones apart
+            std::array<Eigen::MatrixXd, 8> sums, squares;  // by column as the block by row
+            std::array<Eigen::VectorXd, 8> run_squares;
+            sums.fill(Eigen::MatrixXd::Zero(steps, figures));
+            squares.fill(Eigen::MatrixXd::Zero(steps, figures));
+            run_squares.fill(Eigen::VectorXd::Zero(figures));
+            int counted = 0;
+            for (int trial = 0; trial < trials; ++trial) {
+                const Run run =
+                    run_arm(scenario, Controller::fixed, keyed_noise(scenario, 3, static_cast<std::uint64_t>(trial)));
+                const bool trial_failed = run.columns[column_status] >= 2;
+                CHECK(std::isnan(column(block, 0, column_trace_P, trial)) == trial_failed);
+                CHECK((column(block, 0, column_unseen, trial) == -1) == trial_failed);
+                if (run.columns[column_status] != status) continue;
+                ++counted;
+                const std::size_t eighth = static_cast<std::size_t>(trial) % 8;
+                for (int f = 0; f < figures; ++f) {
+                    double run_sum = 0;
+                    for (int k = 0; k < steps; ++k) {
+                        const double value = run.figures(f, k);
+                        sums[eighth](k, f) += value;
+                        squares[eighth](k, f) = std::fma(value, value, squares[eighth](k, f));
+                        run_sum += value;
+                    }
+                    run_squares[eighth][f] = std::fma(run_sum, run_sum, run_squares[eighth][f]);
                 }
-                run_squares[eighth][f] = std::fma(run_sum, run_sum, run_squares[eighth][f]);
             }
+            CHECK((world == fragile) == (counted > 0 && counted < trials));  // both kinds occur, or none failed
+            const SeriesSums& found = status == 0 ? block.arms[0] : block.arms[0].diverged;
+            CHECK(found.sums.empty() == (counted == 0));
+            if (counted == 0) continue;
+            const auto same_as = [](const std::vector<double>& values, const Eigen::MatrixXd& folded) {
+                return test::same_bits(values, std::vector<double>(folded.data(), folded.data() + folded.size()));
+            };
+            for (std::size_t i = 1; i < 8; ++i) {
+                sums[0] += sums[i];
+                squares[0] += squares[i];
+                run_squares[0] += run_squares[i];
+            }
+            CHECK(same_as(found.sums, sums[0]));
+            CHECK(same_as(found.square_sums, squares[0]));
+            CHECK(same_as(found.run_square_sums, run_squares[0]));
         }
-        CHECK((world == fragile) == (counted > 0 && counted < trials));  // both kinds occur, or none failed
-        const auto same_as = [](const std::vector<double>& values, const Eigen::MatrixXd& folded) {
-            return test::same_bits(values, std::vector<double>(folded.data(), folded.data() + folded.size()));
-        };
-        for (std::size_t i = 1; i < 8; ++i) {
-            sums[0] += sums[i];
-            squares[0] += squares[i];
-            run_squares[0] += run_squares[i];
-        }
-        CHECK(same_as(block.arms[0].sums, sums[0]));
-        CHECK(same_as(block.arms[0].square_sums, squares[0]));
-        CHECK(same_as(block.arms[0].run_square_sums, run_squares[0]));
     }
 }
 

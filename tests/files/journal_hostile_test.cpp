@@ -164,7 +164,7 @@ TEST_CASE("journal: a header that was made up is refused") {
     const auto journal_of = [&](const ByteWriter& rest) {
         const std::string text = body.bytes() + rest.bytes();
         const auto size = static_cast<std::uint32_t>(text.size());
-        return sealed("credence-journal" + std::string("\11\0\0\0", 4) +
+        return sealed("credence-journal" + std::string("\12\0\0\0", 4) +
                       std::string(reinterpret_cast<const char*>(&size), sizeof size) + text);
     };
     const auto said = [&](const std::function<void(ByteWriter&)>& make) {

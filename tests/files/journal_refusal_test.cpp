@@ -51,7 +51,7 @@ TEST_CASE("journal: of another version, or none at all, is refused") {
     run_and_die(path, {}, 0);
     const std::string header = bytes_of(journal);
     const std::vector<std::pair<std::string, std::string>> others{
-        {with_version(header, 16, 1), "is a journal of version 1, this program's is 9"},
+        {with_version(header, 16, 1), "is a journal of version 1, this program's is 10"},
         {with_version(header, header_prefix, 77), "is of schema version 77, this program's is "},
         {"trial,trace_P\n0,0.1\n", "is not a journal of credence"},
         {"credence-journey" + header.substr(16), "is not a journal of credence"},

@@ -60,7 +60,7 @@ const std::vector<Damage> scenario_damages{
 };
 
 const std::vector<Damage> arm_damages{
-    {arm + "@counted_trials: counts 2 trials, but the totals are of 3",
+    {arm + "@counted_trials: counts 2 trials, but the totals are of 4",
      with_number<std::int64_t>(arm, "counted_trials", 2)},
     {arm + "/trace_P: is missing", without(arm + "/trace_P")},
     {arm + "/extra: does not belong here", replaced<double>(arm + "/extra", {1})},

@@ -25,29 +25,32 @@ public:
             const std::vector<double> moments = evaluated.moments();
             for (std::size_t c = 0; c < moments.size(); ++c) batch_.moments[c * padded + i] = moments[c];
         }
+        if (evaluated.has_failed()) return;
+        RunningSums to = batch_;
+        if (!evaluated.counts()) to = batch_.of_diverged(batch_.owner);
+        for (std::size_t f = 0; f < case_.all_series.list.size(); ++f) add_figure(f, place, evaluated, to);
+        for (std::size_t b = 0; b < case_.scenario.groups.size(); ++b) add_coverage(b, evaluated, to);
         if (!evaluated.counts()) return;
-        for (std::size_t f = 0; f < case_.all_series.list.size(); ++f) add_figure(f, place, evaluated);
-        for (std::size_t b = 0; b < case_.scenario.groups.size(); ++b) add_coverage(b, evaluated);
         if (batch_.errors != nullptr) add_products(place, evaluated.products());
     }
 
 private:
-    void add_figure(std::size_t f, std::size_t place, const EvaluatedTrial& evaluated) {
+    void add_figure(std::size_t f, std::size_t place, const EvaluatedTrial& evaluated, const RunningSums& to) {
         const std::size_t steps = case_.steps();
         double run = 0;
         for (std::size_t cell = f * steps; cell < (f + 1) * steps; ++cell) {
             const double value = evaluated.all_series()[cell];
-            batch_.sums[cell * octet + place] += value;
-            batch_.square_sums[cell * octet + place] += value * value;
+            to.sums[cell * octet + place] += value;
+            to.square_sums[cell * octet + place] += value * value;
             run += value;
         }
-        batch_.run_square_sums[f * octet + place] += run * run;
+        to.run_square_sums[f * octet + place] += run * run;
     }
 
-    void add_coverage(std::size_t b, const EvaluatedTrial& evaluated) {
+    void add_coverage(std::size_t b, const EvaluatedTrial& evaluated, const RunningSums& to) {
         for (std::size_t cell = b * case_.steps(); cell < (b + 1) * case_.steps(); ++cell)
             for (std::size_t level = 0; level < coverage_level_count; ++level)
-                batch_.covered[cell * coverage_level_count + level] +=
+                to.covered[cell * coverage_level_count + level] +=
                     evaluated.all_series()[cell] < case_.coverage_bounds[b * coverage_level_count + level];
     }
 

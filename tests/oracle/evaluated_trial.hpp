@@ -143,6 +143,7 @@ public:
     void keep_moments(bool keep) { keeps_moments_ = keep; }
     std::vector<double> moments() const { return moments_.moments(); }
     bool counts() const { return credence::counts(status_); }
+    bool has_failed() const { return failed(status_); }
     std::size_t steps_taken() const { return step_; }
 
     void columns(std::vector<double>& row) const {

@@ -198,7 +198,7 @@ TEST_CASE("aggregates: failed trials and missing values are in no sum, and break
 
     std::vector<TrialTotals> sum = arms;
     sum[1].add(arms[1]);
-    sum[1].subtract(arms[1]);
+    sum[1].add(arms[1], -1);
     CHECK(sum[1].statuses == arms[1].statuses);
     CHECK(sum[1].differences[0][column_trace_P].difference.square_sum.parts() ==
           arms[1].differences[0][column_trace_P].difference.square_sum.parts());

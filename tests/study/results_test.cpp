@@ -17,7 +17,7 @@ constexpr std::uint64_t seed = 9;
 /// Some trials fail in it, so that the totals are not those of all.
 DeformableSettings mixed_world() {
     return scenario_with({{"noise.heading", "1e9"}, {"filter.covariance", "10"}, {"arms.controllers", "fixed"},
-                          {"scenario.poses", "3"}});
+                          {"scenario.poses", "4"}});
 }
 
 void add_block(ScenarioResults& results, const Problem& problem, std::int64_t index, int trials) {
@@ -46,11 +46,12 @@ std::vector<double> parts_of(const ScenarioResults& results) {
         all.push_back(-1);
     };
     for (const ArmResults& arm : results.arms) {
-        for (const SeriesTotals& totals : arm.totals.series) {
-            for (const ExactSum& sum : totals.sum) append(sum);
-            for (const ExactSum& sum : totals.square_sum) append(sum);
-            append(totals.run_square_sum);
-        }
+        for (const auto* all_series : {&arm.totals.series, &arm.totals.diverged})
+            for (const SeriesTotals& totals : *all_series) {
+                for (const ExactSum& sum : totals.sum) append(sum);
+                for (const ExactSum& sum : totals.square_sum) append(sum);
+                append(totals.run_square_sum);
+            }
         all.push_back(static_cast<double>(arm.totals.trials.counted()));
     }
     return all;
@@ -92,23 +93,28 @@ TEST_CASE("results: the order of the blocks does not matter") {
     CHECK(forwards.arms[0].totals.trials.counted() < 700);
 }
 
-TEST_CASE("results: totals are those of the trials that neither failed nor diverged") {
+TEST_CASE("results: totals are those of the trials that neither failed nor diverged, and of diverged ones apart") {
     const DeformableSettings scenario = mixed_world();
     const ScenarioResults results = results_of(scenario, 300);
-    double sum = 0;
-    std::int64_t counted = 0;
     const std::size_t trace =
         static_cast<std::size_t>(std::find_if(results.all_series.begin(), results.all_series.end(),
                                               [](const Series& f) { return f.name == "trace_P_step"; }) -
                                  results.all_series.begin());
-    for (std::size_t i = 0; i < 300; ++i) {
-        if (results.arms[0].columns.in_memory()[column_status][i] != 0) continue;
-        sum += results.arms[0].columns.in_memory()[column_trace_P][i];
-        ++counted;
+    for (const Status status : {Status::completed, Status::diverged}) {
+        double sum = 0;
+        std::int64_t count = 0;
+        for (std::size_t i = 0; i < 300; ++i) {
+            if (results.arms[0].columns.in_memory()[column_status][i] != static_cast<double>(status)) continue;
+            sum += results.arms[0].columns.in_memory()[column_trace_P][i];
+            ++count;
+        }
+        const Totals& totals = results.arms[0].totals;
+        REQUIRE(count > 0);
+        CHECK(totals.trials.statuses[static_cast<std::size_t>(status)] == count);
+        // trace_P is the last step's value; 300 roundings of a sum of positive numbers.
+        const auto& all_series = status == Status::completed ? totals.series : totals.diverged;
+        CHECK(relative(all_series[trace].sum.back().rounded(), sum) < 300 * 0x1p-53);
     }
-    CHECK(results.arms[0].totals.trials.counted() == counted);
-    // trace_P is the last step's value; 300 roundings of a sum of positive numbers.
-    CHECK(relative(results.arms[0].totals.series[trace].sum.back().rounded(), sum) < 300 * 0x1p-53);
 }
 
 TEST_CASE("results: a partial block that is taken back and computed again gives the same bits as a fresh run") {

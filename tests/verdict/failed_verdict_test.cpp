@@ -207,7 +207,7 @@ TEST_CASE("failed: diverged trials count, and every failed trial is in the first
         Contains(
             "WARNING: 3 of 100 trials of heading-straight/fixed.ekf failed or diverged; 1 of them are left out of "
             "its numbers.\nnote: 2 trials of heading-straight/fixed.ekf diverged (NEES/dim over the run beyond 25): "
-            "left out of the verdict, kept\n  in the columns"));
+            "left out of the verdict,"));
     CHECK_THAT(row.substr(0, row.find('\n')), Contains(" failed ") && Catch::EndsWith(" 3 (at most 7.6 %)"));
     CHECK_THAT(row, Contains("\n      3 of 100 trials failed or diverged, more than 1 %: 2 with status diverged\n"));
     const Json json = Json::parse(report_json(report));
@@ -220,6 +220,43 @@ TEST_CASE("failed: diverged trials count, and every failed trial is in the first
     CHECK_THAT(page, Contains("<span class=\"badge failed\">") && Contains("3 of 100 trials failed or diverged") &&
                          Contains(">at most 7.6 %</data> of all"));
     CHECK_THROWS_WITH(require(report, Requirement::consistent), Contains("heading-straight/fixed.ekf failed, "));
+}
+
+TEST_CASE("failed: means and series are of diverged trials, too, and what the verdict has stands beside them") {
+    // The heading is not observable; about a quarter of the trials diverge.
+    Study study = new_study({scenario_with({{"scenario.poses", "101"}, {"features.path", "static"},
+                                            {"sensor.range_max", "inf"}, {"noise.heading", "0.05"},
+                                            {"truth.deformation", "walk"}, {"edges.graph", "none"},
+                                            {"control.path", "circle"}, {"arms.controllers", "fixed"}})}, 1);
+    run_study(study, {100, 1, {}});
+    const TemporaryFolder folder;
+    Values values;
+    for (std::size_t i = 0; i < 5 * steps * n; ++i) values.error[i] *= 100;
+    values.write(folder / "record.h5");
+    const Record record = read_record(folder / "record.h5");
+    const Report reports[] = {report_either_way(study, 0.05), make_record_report(record, "record.h5", 0.05)};
+    for (const Report& report : reports) {
+        const ArmReport& arm = report.arms.front();
+        const GroupEvidence& state = arm.evidence.groups.front();
+        const ScenarioResults& results = &report == reports ? study.scenarios.front() : record.results;
+        const std::size_t status = status_column(results.columns);
+        const auto nees = static_cast<std::size_t>(
+            std::ranges::find(results.columns, "nees_ratio", &Column::name) - results.columns.begin());
+        std::vector<double> all = column_values(results, results.arms.front(), nees), others;
+        const std::vector<double> ended = column_values(results, results.arms.front(), status);
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (ended[i] == 0) others.push_back(all[i]);
+        CHECK(arm.diverged == std::ssize(all) - std::ssize(others));
+        CHECK(state.run.mean == Approx(moments_of(exact_moments(all)).mean).epsilon(1e-12));
+        CHECK(moments_of(exact_moments(state.anees.ratio)).mean == Approx(state.run.mean).epsilon(1e-12));
+        CHECK(state.without_diverged.mean == Approx(moments_of(exact_moments(others)).mean).epsilon(1e-12));
+        CHECK(state.without_diverged.mean < state.run.mean / 1.5);
+        CHECK(Json::parse(report_json(report))[0]["groups"][0]["without_diverged"]["nees_ratio"] ==
+              state.without_diverged.mean);
+        CHECK_THAT(report_csv(report), Contains(",nees_per_dimension_without_diverged:all,1,"));
+        CHECK_THAT(report_html(report, {"r.h5", {}, "test"}),
+                   Contains("all without diverged trials") && Contains("left out of the verdict, which has NEES/dim"));
+    }
 }
 
 TEST_CASE("failed: where most trials diverged they are judged, and counted all the same") {

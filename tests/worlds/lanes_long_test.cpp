@@ -161,6 +161,7 @@ bool same_bits(const Block& a, const Block& b) {
         const ArmBlock &x = a.arms[i], &y = b.arms[i];
         all = same(x.columns, y.columns) && same(x.sums, y.sums) && same(x.square_sums, y.square_sums) &&
               same(x.run_square_sums, y.run_square_sums) && x.covered == y.covered && x.cells == y.cells &&
+              same(x.diverged.sums, y.diverged.sums) && same(x.diverged.square_sums, y.diverged.square_sums) &&
               same(x.errors, y.errors) && same(x.nees, y.nees) && same(x.moments, y.moments) &&
               same(x.product_sums, y.product_sums) && same(x.product_square_sums, y.product_square_sums) &&
               same(x.product_counts, y.product_counts);

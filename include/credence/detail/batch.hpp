@@ -17,17 +17,23 @@ struct SimulationShape {
 /// Trials are stored eight by eight, adjacent to each other, so that a pack of lanes can be loaded and stored directly.
 inline constexpr int octet = 8;
 
-/// Consecutive trials of one arm, and the arrays for their results. Results are the same bits from every target. Sums
-/// are eight running sums, trial i of the batch added to number i mod 8 in trial order; failed trials are left out.
-struct Batch {
+/// Eight running sums each, trial i of a batch added to number i mod 8 in trial order.
+struct RunningSums {
+    double* sums = nullptr;             ///< [series_count, K - 1, 8]
+    double* square_sums = nullptr;      ///< [series_count, K - 1, 8]
+    double* run_square_sums = nullptr;  ///< [series_count, 8] of each trial's sum over its steps
+    std::int32_t* covered = nullptr;    ///< [groups, K - 1, levels] trials below the coverage bounds, not by eight
+};
+
+/// Consecutive trials of one arm, and the arrays for their results. Results are the same bits from every target. The
+/// running sums are added to, of the trials that neither failed nor diverged; those of diverged ones are apart.
+struct Batch : RunningSums {
     std::uint64_t root_seed = 0;
     std::int64_t first_trial = 0;
     int trials = 0;
     double* columns = nullptr;          ///< [octets, column_count, 8], a failed trial's still unfilled
-    double* sums = nullptr;             ///< [series_count, K - 1, 8], added to
-    double* square_sums = nullptr;      ///< [series_count, K - 1, 8], added to
-    double* run_square_sums = nullptr;  ///< [series_count, 8], added to: of each trial's sum over its steps
-    std::int32_t* covered = nullptr;    ///< [groups, K - 1, levels], added to: trials below the coverage bounds
+    RunningSums (*of_diverged)(void* owner) = nullptr;  ///< gives those of diverged trials, if one is there
+    void* owner = nullptr;                              ///< for it
     double* nees = nullptr;             ///< [K - 1, octets, 8] of the whole state, failed trials' too
     // Of detailed trials only; null for others.
     double* errors = nullptr;           ///< [n, K - 1, octets, 8] failed trials' too

@@ -10,14 +10,20 @@
 
 namespace credence {
 
-/// One arm's part of a block. Sums are over the trials that did not fail: eight running sums, trial i added to number i
-/// mod 8 in trial order, which are then added up in order. The result is the same for every lane width up to 8.
-struct ArmBlock {
-    std::vector<double> columns;            ///< [columns, trials], failed trials filled
+/// Sums of the series over some trials of a block.
+struct SeriesSums {
     std::vector<double> sums;               ///< [series_count, K - 1]
     std::vector<double> square_sums;        ///< [series_count, K - 1]
     std::vector<double> run_square_sums;    ///< [series_count], of each trial's sum over its steps
     std::vector<std::int32_t> covered;      ///< [component groups, K - 1, levels] trials below each coverage bound
+};
+
+/// One arm's part of a block. Sums are over the trials that neither failed nor diverged: eight running sums, trial i
+/// added to number i mod 8 in trial order, which are then added up in order. The result is the same for every lane
+/// width up to 8.
+struct ArmBlock : SeriesSums {
+    SeriesSums diverged;                    ///< over diverged trials; empty where there are none
+    std::vector<double> columns;            ///< [columns, trials], failed trials filled
     std::vector<std::uint16_t> cells;       ///< [K - 1, trials] cell of the NEES of the whole state, no_cell if failed
     int counted = 0;                        ///< trials that did not fail
     double seconds = 0;                     ///< that they took: no result

@@ -15,9 +15,8 @@ struct ExactMoments {
     std::int64_t count = 0;
     ExactSum sum, square_sum;
 
-    void add(const ExactMoments& other);
-    /// Removes values that were added before, exactly.
-    void subtract(const ExactMoments& other);
+    /// Adds other values, or removes ones that were added before, exactly.
+    void add(const ExactMoments& other, int sign = 1);
 };
 
 ExactMoments exact_moments(const std::vector<double>& values);
@@ -31,8 +30,7 @@ struct DifferenceTotals {
     ExactMoments difference;
     std::int64_t below = 0, above = 0;  ///< trials with a < b, and with a > b
 
-    void add(const DifferenceTotals& other);
-    void subtract(const DifferenceTotals& other);
+    void add(const DifferenceTotals& other, int sign = 1);
     /// b - a instead.
     DifferenceTotals reversed() const;
 };

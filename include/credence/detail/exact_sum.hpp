@@ -11,8 +11,8 @@ namespace credence {
 class ExactSum {
 public:
     void add(double value);
-    void add(const ExactSum& other);
-    void subtract(const ExactSum& other);
+    /// Adds another sum, or subtracts it.
+    void add(const ExactSum& other, int sign = 1);
 
     /// The sum, rounded once to nearest, ties to even; NaN where it is not below 1e300 in size, as its values are.
     double rounded() const;

@@ -18,13 +18,13 @@ struct TrialTotals {
     std::vector<ExactMoments> columns;       ///< [column_count] of the columns that are reported
     /// [earlier arms, column_count] of this arm minus that one, over the trials that failed in neither
     std::vector<std::vector<DifferenceTotals>> differences;
-    bool diverged_count = false;  ///< diverged trials are in the series as the others: of a record
+    bool diverged_count = false;  ///< diverged trials are in the series as the others
 
-    void add(const TrialTotals& other);
-    void subtract(const TrialTotals& other);
+    void add(const TrialTotals& other, int sign = 1);
     std::int64_t trials() const;             ///< number of trials, including failed ones
     std::int64_t counted() const;            ///< those of the series: that did not fail and, as a rule, did not diverge
-    std::int64_t diverged() const;           ///< whose columns are known, and whose series are left out as a rule
+    std::int64_t diverged() const;           ///< whose columns are known, and whose series are apart as a rule
+    std::int64_t finite() const;             ///< that did not fail
 };
 
 /// Whether a column is a quantity of the trial, not its status.
@@ -56,6 +56,9 @@ struct SeriesTotals {
     /// trials; empty: each has the declared one. `sum` and `square_sum` are then of NEES / (dimension at the step)
     /// times the declared dimension.
     std::vector<std::int64_t> dimensions{};
+
+    /// Adds the totals of other trials, or takes them back.
+    void add(const SeriesTotals& other, int sign = 1);
 };
 
 /// Totals over the detailed trials of products of whitened innovations, by lag from 1 up.
@@ -68,7 +71,8 @@ struct ProductTotals {
 /// All totals of one arm.
 struct Totals {
     TrialTotals trials;
-    std::vector<SeriesTotals> series;          ///< [series_count]
+    std::vector<SeriesTotals> series;          ///< [series_count] over the trials that the verdict counts
+    std::vector<SeriesTotals> diverged;        ///< [series_count] over diverged ones apart; empty where there are none
     std::vector<std::int64_t> cells;           ///< [K - 1, distribution_cells] trials by cell of the first nees series
     ProductTotals products;
 
@@ -78,6 +82,11 @@ struct Totals {
     std::vector<double> distribution_distance;
     /// [groups] at the worst step, the mean over the trials of what rounding may have done to NEES; empty: unknown.
     std::vector<double> rounding;
+
+    /// `diverged`, with totals of no trial where it was empty.
+    std::vector<SeriesTotals>& of_diverged();
+    /// `series` and `diverged` together.
+    std::vector<SeriesTotals> of_finite() const;
 
     std::int64_t counted_at(std::size_t step) const { return present.empty() ? trials.counted() : present[step]; }
     /// Trials with a value of the series at a step, and at some step.

@@ -12,7 +12,7 @@ namespace credence {
 namespace {
 
 const std::string magic = "credence-journal";  // 16 bytes
-constexpr std::uint32_t journal_version = 9;
+constexpr std::uint32_t journal_version = 10;
 constexpr std::uint32_t largest_header = std::uint32_t{256} << 20;
 
 [[noreturn]] void refuse(const std::string& path, const std::string& why, const std::string& remedy) {

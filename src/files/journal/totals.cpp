@@ -104,7 +104,10 @@ void put_totals(ByteWriter& to, const ScenarioResults& results) {
 
 void get_totals(ByteReader& from, ScenarioResults& results, std::int64_t trials) {
     for (ArmResults& arm : results.arms) get_trials(from, arm.totals.trials);
-    for (ArmResults& arm : results.arms) visit_totals([&](auto& part) { get(from, part); }, arm.totals);
+    for (ArmResults& arm : results.arms) {
+        if (arm.totals.trials.diverged() > 0) arm.totals.of_diverged();
+        visit_totals([&](auto& part) { get(from, part); }, arm.totals);
+    }
     if (from.left() != 0) throw BadBytes("has more than the totals");
     for (const ArmResults& arm : results.arms)
         if (arm.totals.trials.trials() != trials) throw BadBytes("totals of an impossible number of trials");

@@ -88,7 +88,7 @@ CheckedColumn check_statuses(const Dataset& dataset) {
         add_checksums(values, column.sums);
         for (const int value : values) {
             if (!unknown && (value < 0 || value >= static_cast<int>(status_names().size()))) unknown = value;
-            *column.counted += counts(static_cast<Status>(value));
+            *column.counted += !failed(static_cast<Status>(value));
         }
     });
     if (unknown) throw Error(dataset.place(), "holds " + std::to_string(*unknown) + ", which is no status");

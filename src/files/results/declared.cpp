@@ -8,6 +8,7 @@
 #include <credence/detail/worlds.hpp>
 #include <credence/text.hpp>
 
+#include "files/results/links.hpp"
 #include "record/layout/groups.hpp"
 
 #include <algorithm>
@@ -63,6 +64,7 @@ std::vector<Column> read_columns(const Handle& arm) {
     std::vector<Column> columns;
     for (const std::string& name : hdf5::link_names(arm)) {
         if (columns.size() == most_columns) throw Error(hdf5::place_of(arm), "has too many columns");
+        if (name == without_diverged) continue;
         if (std::optional<Column> column = column_of(arm, name)) columns.push_back(std::move(*column));
     }
     const std::size_t status = status_column(columns);

@@ -15,15 +15,12 @@ namespace {
 using hdf5::Error;
 using hdf5::Handle;
 
-const std::vector<double> levels(std::begin(coverage_levels), std::end(coverage_levels));
-
 std::size_t lags(const ScenarioResults& results) { return static_cast<std::size_t>(lag_count(results.scenario.poses)); }
 
 const std::string& first_nees(const ScenarioResults& results) { return results.all_series.front().name; }
 
 const std::string moments_name = "detailed_moments";
 
-std::string coverage_name(const Series& series) { return series.name + "_covered"; }
 std::string cells_name(const ScenarioResults& results) { return first_nees(results) + "_cells"; }
 
 /// The values were rounded to single precision when they were stored. The bits of NaN depend on the processor.
@@ -37,17 +34,6 @@ std::vector<float> single(const std::vector<double>& values) {
 std::vector<double> read_single(const Handle& group, const std::string& name, const hdf5::Extents& extents) {
     const std::vector<float> values = read_as<float>(group, name, extents);
     return {values.begin(), values.end()};
-}
-
-void write_coverage(const Handle& group, const hdf5::Dimension& step, const ScenarioResults& results,
-                    const ArmResults& arm) {
-    auto level =
-        hdf5::new_dimension(group, "level", levels, {"share of chi-square below the coverage bound", "1"});
-    for (std::size_t f = 0; f < results.all_series.size(); ++f)
-        if (const Series& series = results.all_series[f]; series.role == SeriesRole::nees)
-            hdf5::new_variable(group, coverage_name(series), arm.totals.series[f].covered, {&step, &level},
-                               {series.long_name + ": counted trials below that quantile of chi-square", "1"});
-    level.close();
 }
 
 void write_products(const Handle& group, const hdf5::Dimension& part, const ScenarioResults& results,
@@ -96,20 +82,6 @@ void write_errors(const Handle& group, const hdf5::Dimension& step, const Scenar
     detailed.close();
 }
 
-void read_coverage(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
-    if (read_as<double>(group, "level", {levels.size()}) != levels)
-        throw Error(hdf5::place_of(group, "level"), "does not hold the levels of this version");
-    for (std::size_t f = 0; f < results.all_series.size(); ++f) {
-        if (results.all_series[f].role != SeriesRole::nees) continue;
-        const std::string name = coverage_name(results.all_series[f]);
-        auto& covered = arm.totals.series[f].covered;
-        covered = read_as<std::int64_t>(group, name, {static_cast<hsize_t>(results.steps()), levels.size()});
-        for (std::size_t i = 0; i < covered.size(); ++i)
-            if (covered[i] < (i % levels.size() == 0 ? 0 : covered[i - 1]) || covered[i] > arm.totals.trials.counted())
-                throw Error(hdf5::place_of(group, name), "its counts do not rise from 0 to the counted trials");
-    }
-}
-
 void read_cells(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
     const std::string name = cells_name(results);
     arm.totals.cells = read_as<std::int64_t>(group, name, {static_cast<hsize_t>(results.steps()), distribution_cells});
@@ -136,11 +108,9 @@ void read_products(const Handle& group, const ScenarioResults& results, hsize_t 
 }  // namespace
 
 std::vector<std::string> evidence_links(const ScenarioResults& results) {
-    std::vector<std::string> names{"level", "detailed_trial", "component", "detailed_nees", "detailed_error"};
+    std::vector<std::string> names{"detailed_trial", "component", "detailed_nees", "detailed_error"};
     if (results.moment_count() > 0) names.insert(names.end(), {"moment", moments_name});
     if (distribution_counted(results.steps())) names.insert(names.end(), {"cell", cells_name(results)});
-    for (const Series& series : results.all_series)
-        if (series.role == SeriesRole::nees) names.push_back(coverage_name(series));
     if (lags(results) > 0)
         names.insert(names.end(), {"lag", "whiteness_total", "whiteness_square_total", "whiteness_count"});
     return names;
@@ -148,7 +118,6 @@ std::vector<std::string> evidence_links(const ScenarioResults& results) {
 
 void write_evidence(const Handle& group, const EvidenceDimensions& dimensions, const ScenarioResults& results,
                     const ArmResults& arm) {
-    write_coverage(group, dimensions.step, results, arm);
     if (distribution_counted(results.steps()) && !arm.totals.cells.empty()) {  // records have exact distances
         auto cell = numbered<std::int32_t>(group, "cell", 0, distribution_cells,
                                            "cell of chi-square; every one is as probable as any other");
@@ -163,7 +132,6 @@ void write_evidence(const Handle& group, const EvidenceDimensions& dimensions, c
 void read_evidence(const Handle& group, const ScenarioResults& results, hsize_t parts, ArmResults& arm) {
     const auto steps = static_cast<hsize_t>(results.steps()), size = static_cast<hsize_t>(results.state_size()),
                detailed = static_cast<hsize_t>(results.detailed());
-    read_coverage(group, results, arm);
     if (distribution_counted(results.steps())) {
         check_numbered<std::int32_t>(group, "cell", 0, distribution_cells);
         read_cells(group, results, arm);

@@ -1,6 +1,6 @@
 #pragma once
-// The parts of an arm's group beside columns and totals: coverage, the distribution of NEES, whiteness, and the errors
-// of the detailed trials [docs/results-format.md, Coverage, Distribution, Whiteness, Errors].
+// The parts of an arm's group beside columns and totals: the distribution of NEES, whiteness, and the errors of the
+// detailed trials [docs/results-format.md, Coverage, Distribution, Whiteness, Errors].
 
 #include <credence/detail/results.hpp>
 
@@ -15,6 +15,7 @@ namespace credence {
 struct EvidenceDimensions {
     const hdf5::Dimension& step;
     const hdf5::Dimension& part;
+    const hdf5::Dimension& level;
 };
 
 /// Names of these datasets, coordinates included.

@@ -16,6 +16,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <utility>
 
 namespace credence {
 
@@ -48,11 +49,16 @@ hsize_t read_numbered(const Handle& group, const std::string& name, T first) {
     return dataset.extents()[0];
 }
 
-/// Throws unless the totals are of all trials that did not fail.
-void check_counted(const std::string& place, std::int64_t counted, const ArmResults& arm) {
-    if (counted != arm.totals.trials.counted())
+/// Throws unless as many trials are counted as the totals are of.
+void check_counted(const std::string& place, std::int64_t counted, std::int64_t expected) {
+    if (counted != expected)
         throw Error(place, "counts " + std::to_string(counted) + " trials, but the totals are of " +
-                               std::to_string(arm.totals.trials.counted()));
+                               std::to_string(expected));
+}
+
+void check_counted_trials(const Handle& group, std::int64_t expected) {
+    check_counted(hdf5::attribute_place(group, "counted_trials"),
+                  hdf5::read_number<std::int64_t>(group, "counted_trials"), expected);
 }
 
 /// A study that is being read, and its file.
@@ -71,19 +77,29 @@ std::shared_ptr<const KeptColumns> read_columns(const Handle& group, const Scena
     std::vector<std::vector<std::uint32_t>> sums;
     for (const Column& column : results.columns) {
         CheckedColumn checked = check_column(group, column, results.trials);
-        if (checked.counted) check_counted(hdf5::place_of(group, column.name), *checked.counted, arm);
+        if (checked.counted)
+            check_counted(hdf5::place_of(group, column.name), *checked.counted, arm.totals.trials.finite());
         sums.push_back(std::move(checked.sums));
     }
     return columns_of_file(source.file, source.path, results.scenario.name + "/" + arm.name, results.columns,
                            std::move(sums));
 }
 
-SeriesTotals read_series(const Handle& group, const Series& series, hsize_t steps, hsize_t parts) {
+/// The totals of a series over so many trials.
+SeriesTotals read_series(const Handle& group, const Series& series, hsize_t steps, hsize_t parts,
+                         std::int64_t trials) {
     const std::string total = series.name + "_total", square = series.name + "_square_total";
     SeriesTotals totals;
     totals.sum = series.integer ? read_whole_sums(group, total, steps) : read_sums(group, total, {steps, parts});
     if (!series.integer) totals.square_sum = read_sums(group, square, {steps, parts});
     totals.run_square_sum = read_sums(group, series.name + "_run_square_total", {parts}).front();
+    if (series.role != SeriesRole::nees) return totals;
+    const std::size_t levels = levels_of_coverage.size();
+    totals.covered = read_as<std::int64_t>(group, coverage_name(series), {steps, levels});
+    for (std::size_t i = 0; i < totals.covered.size(); ++i)
+        if (totals.covered[i] < (i % levels == 0 ? 0 : totals.covered[i - 1]) || totals.covered[i] > trials)
+            throw Error(hdf5::place_of(group, coverage_name(series)),
+                        "its counts do not rise from 0 to the counted trials");
     return totals;
 }
 
@@ -96,9 +112,25 @@ hsize_t read_parts(const Handle& group) {
 
 /// Reads totals, except those of the columns, and details.
 void read_totals(const Handle& group, const ScenarioResults& results, ArmResults& arm) {
+    Totals& totals = arm.totals;
     const hsize_t parts = read_parts(group);
-    for (const Series& series : results.all_series)
-        arm.totals.series.push_back(read_series(group, series, static_cast<hsize_t>(results.steps()), parts));
+    if (read_as<double>(group, "level", {levels_of_coverage.size()}) != levels_of_coverage)
+        throw Error(hdf5::place_of(group, "level"), "does not hold the levels of this version");
+    const auto read_all = [&](const Handle& from, std::int64_t trials) {
+        std::vector<SeriesTotals> all;
+        for (const Series& series : results.all_series)
+            all.push_back(read_series(from, series, static_cast<hsize_t>(results.steps()), parts, trials));
+        return all;
+    };
+    totals.series = read_all(group, totals.trials.finite());
+    totals.diverged.clear();
+    if (totals.trials.diverged() > 0) {
+        const Handle others = hdf5::open_group(group, without_diverged);
+        require_links(others, series_links(results));
+        check_counted_trials(others, totals.trials.counted());
+        totals.diverged = std::exchange(totals.series, read_all(others, totals.trials.counted()));
+        for (std::size_t f = 0; f < totals.series.size(); ++f) totals.diverged[f].add(totals.series[f], -1);
+    }
     read_evidence(group, results, parts, arm);
 }
 
@@ -116,7 +148,6 @@ public:
             for (std::size_t a = 0; a < results.arms.size(); ++a) {
                 ArmResults& arm = results.arms[a];
                 arm.totals.trials = of_trials_[a];
-                arm.totals.series.clear();
                 read_totals(hdf5::open_group(scenario, arm.name), results, arm);
             }
         });
@@ -132,7 +163,9 @@ private:
 ArmResults read_arm(const Handle& scenario_group, const std::string& name, ScenarioResults& results,
                     const Opened& source) {
     const Handle group = hdf5::open_group(scenario_group, name);
-    require_links(group, arm_links(results));
+    std::vector<std::string> links = arm_links(results);
+    if (hdf5::has_link(group, without_diverged)) links.push_back(without_diverged);
+    require_links(group, links);
     const bool trials = results.keep == Keep::trials;
     const BlockRanges blocks = trials ? read_blocks(group, source.asked) : read_block_ranges(group, source.asked);
     if (results.arms.empty()) set_blocks(results, blocks, source.asked);
@@ -144,8 +177,10 @@ ArmResults read_arm(const Handle& scenario_group, const std::string& name, Scena
     ArmResults arm;
     arm.name = name;
     arm.totals.trials = read_trial_totals(group, results, read_parts(group));
-    check_counted(hdf5::attribute_place(group, "counted_trials"),
-                  hdf5::read_number<std::int64_t>(group, "counted_trials"), arm);
+    check_counted_trials(group, arm.totals.trials.finite());
+    const bool some = arm.totals.trials.diverged() > 0;
+    if (hdf5::has_link(group, without_diverged) != some)
+        throw Error(hdf5::place_of(group, without_diverged), some ? "is missing" : "does not belong here");
     if (trials) arm.columns.keep(read_columns(group, results, arm, source));
     if (source.most_totals) read_totals(group, results, arm);
     return arm;

@@ -5,6 +5,7 @@
 #include "files/hdf5/read.hpp"
 #include "files/results/evidence.hpp"
 #include "files/results/format.hpp"
+#include "files/results/links.hpp"
 #include "files/results/sums.hpp"
 #include "files/results/trial_totals.hpp"
 
@@ -65,21 +66,23 @@ void write_role(const Handle& variable, const Series& series) {
     hdf5::write_number<std::int32_t>(variable, "more_rows", series.more_rows);
 }
 
-std::size_t largest_part_count(const ArmResults& arm) {
+std::size_t largest_part_count(const ArmResults& arm, const std::vector<SeriesTotals>& finite) {
     std::size_t largest = largest_part_count(arm.totals.trials);
     const auto note = [&](const ExactSum& sum) { largest = std::max(largest, sum.parts().size()); };
-    for (const SeriesTotals& totals : arm.totals.series) {
-        std::for_each(totals.sum.begin(), totals.sum.end(), note);
-        std::for_each(totals.square_sum.begin(), totals.square_sum.end(), note);
-        note(totals.run_square_sum);
-    }
+    for (const std::vector<SeriesTotals>* all : {&finite, &arm.totals.series})
+        for (const SeriesTotals& totals : *all) {
+            std::for_each(totals.sum.begin(), totals.sum.end(), note);
+            std::for_each(totals.square_sum.begin(), totals.square_sum.end(), note);
+            note(totals.run_square_sum);
+        }
     std::for_each(arm.totals.products.sum.begin(), arm.totals.products.sum.end(), note);
     std::for_each(arm.totals.products.square_sum.begin(), arm.totals.products.square_sum.end(), note);
     return largest;
 }
 
-void write_series(const Handle& group, const Dimension& step, const Dimension& part, const Series& series,
+void write_series(const Handle& group, const EvidenceDimensions& of, const Series& series,
                   const SeriesTotals& totals) {
+    const auto& [step, part, level] = of;
     const std::string total = series.long_name + ": total over the counted trials", square = squared_unit(series.unit);
     const auto write_parts = [&](const std::string& suffix, const std::vector<ExactSum>& sums,
                                  const hdf5::Dimensions& dimensions, const hdf5::Description& description) {
@@ -100,6 +103,9 @@ void write_series(const Handle& group, const Dimension& step, const Dimension& p
                            {series.long_name + ": trials with a value", "1"});
     write_parts("_run_square_total", {totals.run_square_sum}, {&part},
                 {total + " of the square of its sum over a trial's steps", square});
+    if (!totals.covered.empty())
+        hdf5::new_variable(group, coverage_name(series), totals.covered, {&step, &level},
+                           {series.long_name + ": counted trials below that quantile of chi-square", "1"});
 }
 
 Dimension new_trial_dimension(const Handle& group, const ScenarioResults& results) {
@@ -112,7 +118,10 @@ Dimension new_trial_dimension(const Handle& group, const ScenarioResults& result
 
 void write_arm(const Handle& scenario_group, const ScenarioResults& results, const ArmResults& arm) {
     const Handle group = hdf5::new_group(scenario_group, arm.name);
-    hdf5::write_number<std::int64_t>(group, "counted_trials", arm.totals.trials.counted());
+    const bool some_diverged = !arm.totals.diverged.empty();
+    const std::vector<SeriesTotals> finite = some_diverged ? arm.totals.of_finite() : std::vector<SeriesTotals>(),
+                                    &all = some_diverged ? finite : arm.totals.series;
+    hdf5::write_number<std::int64_t>(group, "counted_trials", arm.totals.trials.finite());
     std::optional<Dimension> trial;  // the first link, if trials are kept
     if (results.keep == Keep::trials)
         trial.emplace(new_trial_dimension(group, results));
@@ -120,17 +129,24 @@ void write_arm(const Handle& scenario_group, const ScenarioResults& results, con
         write_block_ranges(group, results.blocks);
     Dimension step = numbered<std::int32_t>(group, "step", 1, static_cast<std::size_t>(results.steps()),
                                             "pose that the step leads to");
-    Dimension part = numbered<std::int32_t>(group, "part", 0, largest_part_count(arm),
+    Dimension part = numbered<std::int32_t>(group, "part", 0, largest_part_count(arm, all),
                                             "part of an exact total: 0 the total, the others what rounding left");
+    Dimension level = hdf5::new_dimension(group, "level", levels_of_coverage,
+                                          {"share of chi-square below the coverage bound", "1"});
+    const EvidenceDimensions of{step, part, level};
     if (trial)
         for (std::size_t c = 0; c < results.columns.size(); ++c) write_column(group, *trial, results, arm, c);
     write_trial_totals(group, part, results, arm);
-    for (std::size_t f = 0; f < results.all_series.size(); ++f)
-        write_series(group, step, part, results.all_series[f], arm.totals.series[f]);
-    write_evidence(group, {step, part}, results, arm);
+    for (std::size_t f = 0; f < results.all_series.size(); ++f) write_series(group, of, results.all_series[f], all[f]);
+    write_evidence(group, of, results, arm);
+    if (some_diverged) {
+        const Handle others = hdf5::new_group(group, without_diverged);
+        hdf5::write_number<std::int64_t>(others, "counted_trials", arm.totals.trials.counted());
+        for (std::size_t f = 0; f < results.all_series.size(); ++f)
+            write_series(others, of, results.all_series[f], arm.totals.series[f]);
+    }
     if (trial) trial->close();
-    step.close();
-    part.close();
+    for (Dimension* dimension : {&step, &part, &level}) dimension->close();
 }
 
 void write_study(const Handle& root, const Study& study, const RunFacts& run) {

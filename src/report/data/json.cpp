@@ -61,6 +61,10 @@ Json ratios_json(const Ratios& of) {
 
 Json group_json(const GroupEvidence& group) {
     Json json = ratios_json(group);
+    if (group.without_diverged.count > 0)
+        json["without_diverged"] = {{"nees_ratio", group.without_diverged.mean},
+                                    {"se", group.without_diverged.standard_error},
+                                    {"ci95", interval_json(t_interval(group.without_diverged))}};
     json["rounding"] = group.rounding;
     json["variance_ratio"] = group.variance_ratio;
     json["coverage"] = each_json(group.coverage, coverage_json);

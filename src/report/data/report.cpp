@@ -263,6 +263,8 @@ private:
     }
     void add_group(const GroupEvidence& group) {
         add_moments("nees_per_dimension:" + group.name, group.run);
+        if (group.without_diverged.count > 0)
+            add_moments("nees_per_dimension_without_diverged:" + group.name, group.without_diverged);
         for (std::size_t k = 0; k < group.step.size(); ++k)
             add_moments("nees_per_dimension:" + group.name + ":" + std::to_string(k + 1), group.step[k]);
         add("nees_rounding:" + group.name, group.rounding, nan, none);

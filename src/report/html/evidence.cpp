@@ -45,6 +45,11 @@ Html groups_table(const Part& part) {
                  number_cell(group->accuracy.ratio, ratio_digits),
                  interval_cell(group->accuracy.ratio_ci95, ratio_digits),
                  count_cell(group->rounding)});
+            if (const Moments& run = group->without_diverged; run.count > 0)
+                rows.row(group->name + " without diverged trials",
+                         {count_cell(group->dimension), number_cell(run.mean, digits),
+                          interval_cell(t_interval(run), digits),
+                          number_cell_within(run.standard_error, run.standard_error), "", "", "", "", "", "", ""});
         }
     });
 }
