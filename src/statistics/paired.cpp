@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include "statistics/bootstrap.hpp"
 #include <credence/detail/paired.hpp>
 
 #include "base/nan.hpp"
+#include <boost/math/distributions/binomial.hpp>
 #include <utility>
 
 namespace credence {
@@ -44,7 +46,55 @@ void test_signed_ranks(std::vector<double> differences, PairedComparison& compar
     comparison.wilcoxon_p = std::erfc(std::abs(comparison.wilcoxon_z) / std::sqrt(2.0));
 }
 
+/// `differences` by pair, NaN where there is none.
+CarryingPairs carrying_pairs(const std::vector<double>& differences, const Summary& difference) {
+    if (!(difference.mean * difference.median < 0)) return {};
+    const double sign = difference.mean < 0 ? -1 : 1;
+    std::vector<std::int64_t> order;
+    for (std::size_t i = 0; i < differences.size(); ++i)
+        if (sign * differences[i] > 0) order.push_back(static_cast<std::int64_t>(i));
+    const auto size = [&](std::int64_t i) { return sign * differences[static_cast<std::size_t>(i)]; };
+    std::ranges::stable_sort(order, std::greater(), size);
+    double rest = sign * difference.mean * static_cast<double>(difference.count);
+    CarryingPairs carrying;
+    for (auto largest = order.begin(); rest > 0 && largest != order.end(); ++largest, ++carrying.count)
+        rest -= size(*largest);
+    order.resize(static_cast<std::size_t>(std::min<std::int64_t>(carrying.count, 5)));
+    carrying.first = std::move(order);
+    return carrying;
+}
+
+/// Sum of the probabilities of `from`, `from` + step ... of `of_a` when `both` of `of_a` + `of_b` are drawn, relative to
+/// that of `from`, which is left out; and of those that are not larger, up to rounding.
+std::pair<double, double> tables_beyond(double from, double both, double of_a, double of_b, int step) {
+    double all = 0, rare = 0, weight = 1;
+    for (double k = from; weight > 1e-20 && std::isfinite(all); k += step) {
+        const double up = step > 0 ? k : k - 1;  // to `up` + 1 from `up`, or back
+        const double ratio = (of_a - up) * (both - up) / ((up + 1) * (of_b - both + up + 1));
+        weight *= step > 0 ? ratio : 1 / ratio;
+        all += weight;
+        if (weight <= 1 + 1e-7) rare += weight;
+    }
+    return {all, rare};
+}
+
 }  // namespace
+
+double sign_test(std::int64_t below, std::int64_t above) {
+    if (below + above == 0) return 1;
+    const boost::math::binomial half(static_cast<double>(below + above), 0.5);
+    return std::min(1.0, 2 * cdf(half, static_cast<double>(std::min(below, above))));
+}
+
+double fisher_exact(std::int64_t a, std::int64_t of_a, std::int64_t b, std::int64_t of_b) {
+    const auto part = [&](int step) {
+        return tables_beyond(static_cast<double>(a), static_cast<double>(a + b), static_cast<double>(of_a),
+                    static_cast<double>(of_b), step);
+    };
+    const auto [above, rare_above] = part(1);
+    const auto [below, rare_below] = part(-1);
+    return std::min(1.0, (1 + rare_above + rare_below) / (1 + above + below));
+}
 
 PairedComparison compare_paired(const std::vector<double>& a, const std::vector<double>& b, std::uint64_t root_seed,
                                 const std::string& column) {
@@ -63,6 +113,7 @@ PairedComparison compare_paired(const std::vector<double>& a, const std::vector<
     test_signed_ranks(differences, comparison);
     comparison.histogram = histogram(differences, BinWidths::equal);
     comparison.difference.median = quantile(differences, 0.5);
+    comparison.carrying = carrying_pairs(by_trial, comparison.difference);
     return comparison;
 }
 
@@ -75,6 +126,7 @@ PairedComparison compare_totals(const DifferenceTotals& totals, const ExactMomen
     comparison.wins_a = static_cast<double>(totals.below) / static_cast<double>(pairs);
     comparison.wins_b = static_cast<double>(totals.above) / static_cast<double>(pairs);
     comparison.ties = static_cast<double>(pairs - totals.below - totals.above) / static_cast<double>(pairs);
+    comparison.sign_p = pairs == 0 ? nan : sign_test(totals.below, totals.above);
     const Moments of_a = moments_of(a), of_b = moments_of(b);
     const double deviation = comparison.difference.standard_deviation;
     comparison.effect_size = comparison.difference.mean / deviation;

@@ -21,6 +21,12 @@ CommonTrials::CommonTrials(const ScenarioResults& a, const ScenarioResults& b) {
     }
 }
 
+std::int64_t CommonTrials::row_of_a(std::int64_t place) const {
+    auto span = spans_.begin();
+    for (; place >= span->rows; ++span) place -= span->rows;
+    return span->a + place;
+}
+
 std::vector<double> CommonTrials::selected(const std::vector<double>& values, std::int64_t Span::* first) const {
     std::vector<double> chosen;
     chosen.reserve(static_cast<std::size_t>(count_));
@@ -37,8 +43,11 @@ PairedComparison compare_column(const ComparedArm& a, const ComparedArm& b, std:
     if (a.results.keep == Keep::aggregates)
         return compare_totals(column_differences(a.results, a.arm, b.arm, c), a.arm.totals.trials.columns[c],
                               b.arm.totals.trials.columns[c]);
-    return compare_paired(common.of_a(figure_values(a.results, a.arm, c)),
-                          common.of_b(figure_values(b.results, b.arm, other)), root_seed, key);
+    PairedComparison paired = compare_paired(common.of_a(figure_values(a.results, a.arm, c)),
+                                             common.of_b(figure_values(b.results, b.arm, other)), root_seed, key);
+    for (std::int64_t& trial : paired.carrying.first)
+        trial = trial_numbers(a.results, common.row_of_a(trial), 1).front();
+    return paired;
 }
 
 }  // namespace

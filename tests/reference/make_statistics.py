@@ -198,8 +198,8 @@ def paired(a, b):
     sign = 1 if positive > len(d[d != 0]) * (len(d[d != 0]) + 1) / 4 else -1
     return {"a": a, "b": b, "pairs": len(d), "mean": math.fsum(d) / len(d), "ci95": t_interval(d),
             "bootstrap95": interval, "median": np.median(d), "wins_a": np.mean(x < y), "wins_b": np.mean(x > y),
-            "ties": np.mean(x == y), "wilcoxon_z": sign * abs(test.zstatistic), "wilcoxon_p": test.pvalue,
-            "effect_size": d.mean() / d.std(ddof=1),
+            "ties": np.mean(x == y), "sign_p": stats.binomtest(int((x < y).sum()), int((x != y).sum())).pvalue,
+            "wilcoxon_z": sign * abs(test.zstatistic), "wilcoxon_p": test.pvalue, "effect_size": d.mean() / d.std(ddof=1),
             "variance_reduction": (x.var(ddof=1) + y.var(ddof=1)) / d.var(ddof=1)}
 
 
@@ -213,6 +213,13 @@ def pairs():
     quarters = ROWS.integers(0, 9, (2, 30)) / 4  # many zeros and ties
     return [paired(a, b), paired(failed_a, failed_b), paired(*quarters), paired([1.0, 2.5, 4.0], [1.0, 2.0, 5.5]),
             paired(np.arange(12.0), np.arange(12.0) ** 2 + 1)]
+
+
+def fisher():
+    return [[a, of_a, b, of_b, stats.fisher_exact([[a, of_a - a], [b, of_b - b]])[1]]
+            for a, of_a, b, of_b in [(13, 300, 0, 300), (0, 300, 13, 300), (2, 300, 2, 300), (0, 20, 0, 20),
+                                     (20, 20, 20, 20), (20, 20, 0, 20), (5, 40, 9, 31), (1, 3, 2, 7),
+                                     (40, 1000, 9, 700), (3000, 10**5, 2900, 10**5)]]
 
 
 def wilcoxon_level(n, z=stats.norm.isf(0.025)):
@@ -281,7 +288,8 @@ def credibility(n, count, failed):
 
 print(json.dumps(plain({
     **quantiles(), "samples": samples(), "bootstrap": bootstraps(), "paired": pairs(),
-    "wilcoxon_level": wilcoxon_level(30), "wilson": wilson(), "kolmogorov_smirnov": kolmogorov_smirnov(),
+    "fisher": fisher(), "wilcoxon_level": wilcoxon_level(30), "wilson": wilson(),
+    "kolmogorov_smirnov": kolmogorov_smirnov(),
     "distances": distances(),
     "credibility": [credibility(1, 9, [2]), credibility(3, 40, [0, 39]), credibility(5, 12, [])],
     "bootstrap_coverage": coverages(),

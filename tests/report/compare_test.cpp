@@ -11,6 +11,7 @@
 namespace credence::test::compare_test {
 
 using Catch::Contains;
+using Catch::StartsWith;
 using Json = nlohmann::json;
 
 TEST_CASE("compare: every number is computed from the columns") {
@@ -199,6 +200,45 @@ TEST_CASE("compare: the conclusion names every column that differs, and the JSON
     const Json json = Json::parse(compare_json(report))[0];
     CHECK(json["lower"] == Json::array({"unseen"}));
     CHECK(json["higher"] == Json::array({"path_length"}));
+}
+
+TEST_CASE("compare: failures are concluded on before means, few pairs by their signs, and carriers are named") {
+    Study study = new_study({matched()}, 1);
+    extend(study.scenarios[0], 300);
+    auto& planned = study.scenarios[0].arms[1].columns.in_memory();
+    auto& fixed = study.scenarios[0].arms[0].columns.in_memory();
+    std::ranges::fill(fixed[column_trace_P], 1);
+    const auto said = [&](std::size_t failed, std::size_t pairs, auto difference) {
+        for (std::size_t i = 0; i < 300; ++i) {
+            planned[column_trace_P][i] = 1 + difference(i);
+            planned[column_status][i] = static_cast<double>(i < failed ? Status::non_finite : Status::completed);
+            fixed[column_status][i] =
+                static_cast<double>(i < failed + pairs ? Status::completed : Status::non_finite);
+        }
+        recount(study.scenarios[0]);
+        const CompareReport report = compared({{"made-up.h5", study}});
+        const Json json = Json::parse(compare_json(report))[0];
+        CHECK_THAT(compare_html(report, "test"), Contains(json["conclusion_of_mean"] == "lower" ? "is lower" : "A"));
+        std::string text = compare_text(report);
+        for (std::size_t at; (at = text.find("\n    ")) != std::string::npos;) text.replace(at, 5, " ");
+        return json["conclusion"].get<std::string>() + ", " + json["conclusion_of_mean"].get<std::string>() + "; " +
+               text;
+    };
+    const auto lower = [](std::size_t i) { return i % 5 == 0 ? 0.1 : -1.0 - 0.01 * static_cast<double>(i % 7); };
+    CHECK_THAT(said(13, 287, lower),
+               StartsWith("fails more often, lower; ") &&
+                   Contains("greedy.kf fails or diverges more often than fixed.kf, in 13 of 300 (4 %) trials against 0 "
+                            "of 300 (0 %) (Fisher p 2e-04); trace_P: greedy.kf is lower"));
+    CHECK_THAT(said(7, 293, lower), StartsWith("lower, lower; ") && !Contains("fails or"));  // p 0.015
+    CHECK_THAT(said(0, 20, lower), StartsWith("fails less often, lower; "));                 // signs: p 0.012
+    CHECK_THAT(said(0, 10, lower), StartsWith("fails less often, too few to conclude; ") &&  // signs: p 0.11
+                                       Contains("too few pairs to conclude (greedy.kf - fixed.kf is -0.8") &&
+                                       Contains("; the sign test has p 0.109"));
+    CHECK_THAT(said(0, 300, [](std::size_t i) { return i == 7 ? -900 : 1 + 0.001 * static_cast<double>(i); }),
+               StartsWith("no difference shown, ") &&
+                   Contains("; the median has the other sign: 1 of 300 trials carry the mean (7)"));
+    CHECK_THAT(said(0, 300, [](std::size_t i) { return i % 4 == 0 ? -9 - 0.01 * static_cast<double>(i) : 1.0; }),
+               StartsWith("lower, lower; ") && Contains(" carry the mean (296, 292, 288, 284, 280, ...)"));
 }
 
 TEST_CASE("compare: what is not shown is said so, and ranks against the mean are not hidden") {

@@ -38,11 +38,31 @@ TEST_CASE("paired: every number agrees with SciPy and NumPy") {
         check_agrees(c.wins_a, one["wins_a"]);
         check_agrees(c.wins_b, one["wins_b"]);
         check_agrees(c.ties, one["ties"]);
+        check_agrees(c.sign_p, one["sign_p"]);
         check_agrees(c.wilcoxon_z, one["wilcoxon_z"]);
         check_agrees(c.wilcoxon_p, one["wilcoxon_p"]);
         check_agrees(c.effect_size, one["effect_size"]);
         check_agrees(c.variance_reduction, one["variance_reduction"]);
     }
+}
+
+TEST_CASE("paired: Fisher's exact test agrees with SciPy, and comes to an end for any number of trials") {
+    for (const Json& one : reference("fisher"))
+        check_agrees(fisher_exact(one[0], one[1], one[2], one[3]), one[4]);
+    constexpr std::int64_t many = 1'000'000'000'000;
+    CHECK(fisher_exact(many / 2, many, many / 4, many) == 0);
+    CHECK(fisher_exact(many / 2, many, many / 2, many) == 1);
+}
+
+TEST_CASE("paired: where mean and median differ in sign, the fewest pairs that carry the mean are named") {
+    const auto carrying = [](const std::vector<double>& a) {
+        return compare_paired(a, std::vector<double>(a.size(), 0), 1, "f").carrying;
+    };
+    // The sum is 2.5; without the 5, -2.5.
+    CHECK(carrying({-1, missing, 4, -1, 5, -1.5, -1.5, -1.5}).first == std::vector<std::int64_t>{4});
+    CHECK(carrying({1, 1, 1, -1, -8}).count == 1);
+    CHECK(carrying({1, 1, 4, -1, -1}).count == 0);
+    CHECK(carrying({-1, -1, -1, -1, -1, -1, -1, -1, -1, 3, 3, 2, 3, 2, 3, 3}).count == 4);  // 3 3 3 3, with 10 > 9
 }
 
 TEST_CASE("paired: the smaller value wins, and its arm has the negative score") {

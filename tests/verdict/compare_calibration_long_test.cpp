@@ -42,9 +42,9 @@ TEST_CASE("compare: the variance reduction is what unpaired runs with seeds of t
 }
 
 TEST_CASE("compare: conclusions hold together at 95 %", "[long]") {
-    // 200 families of 5 comparisons of 100 standard-normal differences with mean 0. The t interval at 99 % is 2.6
-    // standard errors wide, and pairs that were not seen add 9 sd (1 - 0.005^(1/100)), 4.6: beyond both there is none.
-    // The t intervals alone would have a conclusion in 4.9 % of the families, 10; without the correction in 45.
+    // 200 families of 5 comparisons of 100 standard-normal differences with mean 0, at 0.8 % each: 3.9 % of the
+    // families have a conclusion, 8 with standard deviation 2.8; more than 19 or none have probability 5e-4. Without
+    // the correction, 4 % each, there would be 37.
     std::vector<DeformableSettings> scenarios;
     for (int s = 0; s < 5; ++s) scenarios.push_back(changed(matched(), "scenario.name", "s" + std::to_string(s)));
     Study study = new_study(scenarios, 1);
@@ -63,7 +63,8 @@ TEST_CASE("compare: conclusions hold together at 95 %", "[long]") {
                              [](const ComparedPair& pair) { return pair.conclusion != Conclusion::not_shown; });
     }
     CAPTURE(wrong);
-    CHECK(wrong == 0);
+    CHECK(wrong > 0);
+    CHECK(wrong <= 19);
 }
 
 }  // namespace credence::test::compare_calibration_long_test

@@ -38,6 +38,8 @@ class CommonTrials {
 public:
     CommonTrials(const ScenarioResults& a, const ScenarioResults& b);
     std::int64_t count() const { return count_; }
+    /// The row of `a` that has the common trial of that place.
+    std::int64_t row_of_a(std::int64_t place) const;
     /// The values of the common trials, from one value a trial of `a` or of `b`.
     std::vector<double> of_a(const std::vector<double>& values) const { return selected(values, &Span::a); }
     std::vector<double> of_b(const std::vector<double>& values) const { return selected(values, &Span::b); }

@@ -5,7 +5,6 @@
 #include <credence/text.hpp>
 
 #include "report/compare/choice.hpp"
-#include "statistics/mean_bounds.hpp"
 
 namespace credence {
 
@@ -83,21 +82,30 @@ ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
     return pair;
 }
 
-/// Whether a difference is shown, as one of `comparisons`, whose levels are Bonferroni's: by its t interval, widened by
-/// what pairs that were not seen could add. At the level of a side, a share of 1 - level^(1/n) may have been missed
-/// [as for NEES, statistics/mean_bounds.hpp]; each such pair is taken to be nine standard deviations away.
-Conclusion concluded(const ComparedPair& pair, std::size_t comparisons) {
+/// The levels of the conclusions on failures and on the mean, each shared by all comparisons (Bonferroni).
+constexpr double level_of_failures = 0.01, level_of_mean = 0.04;
+/// Of fewer pairs the t interval alone concludes nothing.
+constexpr std::int64_t enough_pairs = 30;
+
+Conclusion concluded_on_mean(const ComparedPair& pair, double level) {
     const PairedComparison& paired = pair.comparison.columns.front().paired;
     if (pair.not_run()) return Conclusion::not_run;
     if (paired.pairs > 0 && paired.ties == 1) return Conclusion::equal;
-    if (paired.pairs < 2) return Conclusion::not_shown;
+    const bool few = paired.pairs < enough_pairs;
     const Summary& difference = paired.difference;
-    const double level = 0.05 / static_cast<double>(comparisons), pairs_counted = static_cast<double>(paired.pairs),
-                 half = t_quantile(level, pairs_counted - 1) * difference.standard_error +
-                        unseen_share(level / 2, pairs_counted) * unseen_size * difference.standard_deviation;
-    if (difference.mean + half < 0) return Conclusion::lower;
-    if (difference.mean - half > 0) return Conclusion::higher;
-    return Conclusion::not_shown;
+    const double half = t_quantile(level, static_cast<double>(paired.pairs - 1)) * difference.standard_error;
+    const auto agrees = [&](bool with) { return !few || (with && paired.sign_p <= level); };
+    if (difference.mean + half < 0 && agrees(paired.wins_a > paired.wins_b)) return Conclusion::lower;
+    if (difference.mean - half > 0 && agrees(paired.wins_b > paired.wins_a)) return Conclusion::higher;
+    return few ? Conclusion::too_few : Conclusion::not_shown;
+}
+
+void conclude(ComparedPair& pair, std::size_t comparisons) {
+    const std::int64_t a = pair.a.failed_trials(), b = pair.b.failed_trials();
+    pair.failure_p = fisher_exact(a, pair.trials, b, pair.trials);
+    if (pair.failure_p <= level_of_failures / static_cast<double>(comparisons))
+        pair.failures = a < b ? Conclusion::lower : Conclusion::higher;
+    pair.conclusion = concluded_on_mean(pair, level_of_mean / static_cast<double>(comparisons));
 }
 
 /// Holm's correction over all comparisons that are shown, as for the pairs of a report.
@@ -111,7 +119,12 @@ void correct_together(std::vector<ComparedPair>& pairs) {
 }  // namespace
 
 const std::string& conclusion_name(Conclusion conclusion) {
-    static const std::string names[] = {"lower", "higher", "equal", "no difference shown", "not run yet"};
+    static const std::string names[] = {"lower",
+                                        "higher",
+                                        "equal",
+                                        "no difference shown",
+                                        "too few to conclude",
+                                        "not run yet"};
     return names[static_cast<std::size_t>(conclusion)];
 }
 
@@ -126,8 +139,7 @@ CompareReport compare_studies(const std::vector<StudyFile>& files, const std::op
     for (const ChosenPair& chosen : chosen_pairs(files, choice, report.left_out))
         report.pairs.push_back(compared(chosen, report.root_seed));
     correct_together(report.pairs);
-    for (ComparedPair& pair : report.pairs)
-        pair.conclusion = concluded(pair, report.pairs.size());
+    for (ComparedPair& pair : report.pairs) conclude(pair, report.pairs.size());
     return report;
 }
 

@@ -37,12 +37,13 @@ struct ArmsChoice {
 ArmsChoice read_arms(const std::string& text, const std::vector<std::string>& paths);
 
 /// The conclusion from the pairs on the first column: trace(P) where the arms are controllers of one filter, and the
-/// log score where they are different filters.
+/// log score where they are different filters. On the trials that failed or diverged: lower, higher or not_shown.
 enum class Conclusion {
-    lower,      ///< A's mean is lower
-    higher,     ///< A's mean is higher
+    lower,      ///< A's mean, or share, is lower
+    higher,     ///< it is higher
     equal,      ///< A and B are equal in every trial
     not_shown,  ///< neither is shown
+    too_few,    ///< nor could it be by so few pairs, unless their signs agree
     not_run,    ///< A or B has no trial yet
 };
 const std::string& conclusion_name(Conclusion conclusion);
@@ -71,7 +72,9 @@ struct ComparedPair {
     bool complete = true;                    ///< the studies of both are
     Keep keep = Keep::trials;
     std::vector<KeyDifference> differences;  ///< of scenarios of different files, but for titles and published values
-    Conclusion conclusion = Conclusion::not_shown;
+    double failure_p = 1;            ///< of Fisher's exact test on the shares that failed or diverged
+    Conclusion failures = Conclusion::not_shown;    ///< on these shares
+    Conclusion conclusion = Conclusion::not_shown;  ///< on the means of the pairs
 
     bool not_run() const { return a.trials == 0 || b.trials == 0; }
     std::int64_t pairs() const { return comparison.columns.front().paired.pairs; }
@@ -89,9 +92,9 @@ struct CompareReport {
 /// a choice: of one file, every planned arm with its baseline (baseline_of); of several, each later file's arms with
 /// the first file's of the same name (later - first). Arms of several files are called `STEM:arm`.
 ///
-/// The conclusion is `lower` or `higher` where the mean difference is beyond t_{1 - 0.025/m, n - 1} standard errors and
-/// what pairs that were not seen could add [docs/statistics.md, Comparison], m the number of comparisons, so that all
-/// conclusions hold together at 95 %.
+/// The conclusion on failures is drawn by Fisher's exact test at 1 %/m, m the number of comparisons; that on the mean
+/// where it is beyond t_{1 - 0.02/m, n - 1} standard errors, and below 30 pairs only if the sign test agrees at 4 %/m:
+/// all conclusions hold together at 95 % [docs/statistics.md, Comparison].
 ///
 /// Throws InputError where files have different root seeds, where a scenario's world is not the same in them (any key
 /// but scenario.title and those of filter, control, planner, arms and published), or where nothing has both arms; and

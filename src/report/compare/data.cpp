@@ -23,7 +23,17 @@ Json column_json(const ComparedPair& pair, const ComparedColumn& column) {
     Json json = compared_json(column);
     json["mean_a"] = pair.a.mean[c];
     json["mean_b"] = pair.b.mean[c];
+    json["sign_p"] = column.paired.sign_p;
+    json["carried_by"] = column.paired.carrying.count;
+    json["carriers"] = column.paired.carrying.first;
     return json;
+}
+
+/// More failures come before a better mean of what did not fail.
+std::string overall(const ComparedPair& pair) {
+    return pair.failures == Conclusion::higher  ? "fails more often"
+           : pair.failures == Conclusion::lower ? "fails less often"
+                                                : conclusion_name(pair.conclusion);
 }
 
 Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
@@ -32,7 +42,9 @@ Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
               {"b", pair.comparison.b},
               {"trials", pair.trials},
               {"pairs", pair.pairs()},
-              {"conclusion", conclusion_name(pair.conclusion)},
+              {"conclusion", overall(pair)},
+              {"conclusion_of_mean", conclusion_name(pair.conclusion)},
+              {"failure_p", pair.failure_p},
               {"pair", pair.comparison.name()}};
     Json behind{{"same_world", !of_different_worlds(pair)}, {"differences", Json::object()}};
     for (const KeyDifference& key : pair.differences) behind["differences"][key.key] = Json::array({key.a, key.b});
@@ -52,7 +64,7 @@ Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
 
 /// The numbers of a row, by their names in JSON; of an interval there are both ends.
 constexpr const char* csv_numbers[] = {"mean_a", "mean_b", "mean", "se", "ci95", "bootstrap95", "median", "sd",
-                                       "below", "above", "ties", "wilcoxon_z", "wilcoxon_p", "holm_p", "effect_size",
+                                       "below", "above", "ties", "sign_p", "carried_by", "wilcoxon_z", "wilcoxon_p", "holm_p", "effect_size",
                                        "variance_reduction"};
 
 std::string csv_of(const ComparedPair& pair, const ComparedColumn& column) {
@@ -77,7 +89,7 @@ std::string compare_json(const CompareReport& report) {
 std::string compare_csv(const CompareReport& report) {
     std::string text =
         "scenario,a,b,name,unit,pairs,mean_a,mean_b,mean,se,ci95_low,ci95_high,bootstrap95_low,bootstrap95_high,"
-        "median,sd,below,above,ties,wilcoxon_z,wilcoxon_p,holm_p,effect_size,variance_reduction\n";
+        "median,sd,below,above,ties,sign_p,carried_by,wilcoxon_z,wilcoxon_p,holm_p,effect_size,variance_reduction\n";
     for (const ComparedPair& pair : report.pairs)
         for (const ComparedColumn& column : pair.comparison.columns) text += csv_of(pair, column);
     return text;

@@ -51,6 +51,29 @@ std::string despite(const Comparison& comparison) {
            p_text(comparison.columns.front().holm_p) + ")";
 }
 
+/// The pairs that carry the mean, where it has not the sign of the median.
+std::string carried(const ComparedPair& pair) {
+    const CarryingPairs& carrying = pair.comparison.columns.front().paired.carrying;
+    if (carrying.count == 0) return "";
+    std::vector<std::string> trials;
+    for (const std::int64_t trial : carrying.first) trials.push_back(std::to_string(trial));
+    if (carrying.count > std::ssize(trials)) trials.push_back("...");
+    return "; the median has the other sign: " + std::to_string(carrying.count) + " of " +
+           std::to_string(pair.pairs()) + " trials carry the mean (" + joined(trials) + ")";
+}
+
+/// That on trials that failed or diverged, which comes before the means of the others.
+std::string failure_conclusion(const ComparedPair& pair) {
+    if (pair.failures == Conclusion::not_shown) return "";
+    const auto share = [&](const ComparedSide& side) {
+        const double part = static_cast<double>(side.failed_trials()) / static_cast<double>(pair.trials);
+        return std::to_string(side.failed_trials()) + " of " + std::to_string(pair.trials) + " (" + percent(part) + ")";
+    };
+    return pair.comparison.a + " fails or diverges " +
+           (pair.failures == Conclusion::lower ? "less often" : "more often") + " than " + pair.comparison.b + ", in " +
+           share(pair.a) + " trials against " + share(pair.b) + " (Fisher p " + p_text(pair.failure_p) + "); ";
+}
+
 std::string conclusions(const CompareReport& report) {
     int width = 0;
     for (const ComparedPair& pair : report.pairs)
@@ -109,7 +132,7 @@ std::string compare_head(const CompareReport& report) {
            (trials ? "; p is that of Wilcoxon's signed ranks,\nHolm-corrected over all columns below"
                    : " (Student's). Medians, bootstrap and signed ranks\nneed the trials: " + program_name() +
                          " run --keep trials") +
-           (report.pairs.size() > 1 ? "; the conclusions hold together at 95 % (Bonferroni).\n" : ".\n");
+           "; conclusions hold together at 95 %.\n";
 }
 
 namespace {
@@ -128,25 +151,27 @@ std::string first_conclusion(const ComparedPair& pair) {
     if (paired.pairs == 0)
         return text + (is_score ? "nothing to compare without covariances of the whole state"
                                 : "no pairs, nothing to compare");
-    if (pair.conclusion == Conclusion::not_shown && !std::isfinite(mean))
-        return text + "no difference shown (the mean of " + comparison.name() + " is not finite)";
     if (pair.conclusion == Conclusion::equal) return text + both + " are equal in every trial";
-    if (pair.conclusion == Conclusion::not_shown)
-        return text + "no difference shown (" + comparison.name() + " is " + number(mean, digits) +
+    const bool few = pair.conclusion == Conclusion::too_few;
+    const std::string not_shown = few ? "too few pairs to conclude (" : "no difference shown (";
+    if ((few || pair.conclusion == Conclusion::not_shown) && !std::isfinite(mean))
+        return text + not_shown + "the mean of " + comparison.name() + " is not finite)";
+    const std::string doubt = !(interval.low > 0 || interval.high < 0) ? ""
+                              : few ? "; the sign test has p " + p_text(paired.sign_p)
+                                    : "; not enough for all conclusions to hold together";
+    if (few || pair.conclusion == Conclusion::not_shown)
+        return text + not_shown + comparison.name() + " is " + number(mean, digits) +
                (paired.pairs == 1                       ? ", one pair"
                 : std::isfinite(half_width(interval)) ? " " + bracketed(interval, digits)
                                                       : "") + ")" +
-               (interval.low > 0 || interval.high < 0
-                    ? "; so few pairs may lack some that differ far more"
-                    : "") +
-               despite(comparison);
+               doubt + despite(comparison) + carried(pair);
     const bool lower = pair.conclusion == Conclusion::lower;
     const double share = lower ? paired.wins_a : paired.wins_b, against = lower ? paired.wins_b : paired.wins_a;
     const Interval size = lower ? Interval{-interval.high, -interval.low} : interval;
     return text + comparison.a + " is " + (lower ? "lower" : "higher") + " than " + comparison.b + " by " +
            number(std::abs(mean), digits) + " " + bracketed(size, digits) +
            (share < against ? " on average, though only in " : ", in ") + percent(share) + " of trials" +
-           (paired.ties >= 0.005 ? " (equal in " + percent(paired.ties) + ")" : "");
+           (paired.ties >= 0.005 ? " (equal in " + percent(paired.ties) + ")" : "") + carried(pair);
 }
 
 /// The columns behind the first that differ, with their mean differences.
@@ -163,7 +188,9 @@ std::string others_text(const ComparedPair& pair) {
 
 }  // namespace
 
-std::string conclusion_text(const ComparedPair& pair) { return first_conclusion(pair) + others_text(pair); }
+std::string conclusion_text(const ComparedPair& pair) {
+    return failure_conclusion(pair) + first_conclusion(pair) + others_text(pair);
+}
 
 std::string compare_notes(const CompareReport& report) {
     std::string text;
