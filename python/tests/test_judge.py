@@ -261,6 +261,57 @@ def test_records_of_other_runs_are_not_compared(tmp_path):
         refused(said, credence.compare, first, other)
 
 
+def test_records_are_compared_in_one_state_at_the_steps_that_all_have(tmp_path, program):
+    rng = np.random.default_rng(12)
+    errors, ones = rng.normal(size=(60, 30, 2)), np.broadcast_to(np.eye(2), (60, 30, 2, 2))
+
+    def record(name, error, covariance=ones, columns=None, **attributes):
+        path = tmp_path / name
+        with h5py.File(path, "w") as file:
+            file["error"], file["covariance"] = error, np.where(np.isnan(error)[..., None], np.nan, covariance)
+            file.attrs.update(attributes)
+            if columns:
+                file["column/range"] = np.ones(60)
+                file["column/range"].attrs["units"] = columns
+        return path
+
+    known = errors * [1, 0], ones * [[1, 0], [0, 0]]
+    first = record("first.h5", errors, columns="m", component_names="x, y", component_units="m, m")
+    for name, given, said in (
+        ("swapped.h5", {"component_names": "y, x"}, "/@component_names: is y, x, and that of the first record x, y"),
+        ("km.h5", {"component_units": "km, km"}, "/@component_units: is km, km, and that of the first record m, m"),
+        ("column.h5", {"columns": "km"}, "range is in km in .*column.h5 and in m in "),
+    ):
+        other = record(name, errors, **given)
+        refused(said, credence.compare, first, other)
+        assert program("compare", first, other)[0] == 2
+    plain = record("plain.h5", errors)
+    refused("another number of components that are not known exactly: 1, and the first record 2", credence.compare,
+            plain, record("known.h5", *known))
+    assert "equal in every trial" in str(credence.compare(plain, record("named.h5", errors, component_names="x, y")))
+
+    # What skips the steps at which it is worst does not win: it has the errors of the other at those that it has.
+    hard = rng.random((60, 30)) < 0.1
+    hard[:, -1] = False
+    worse = np.where(hard[..., None], 5 * errors, errors)
+    skips = record("skips.h5", np.where(hard[..., None], np.nan, errors))
+    comparison = credence.compare(record("worse.h5", worse), skips)
+    (pair,) = comparison.json
+    assert pair["conclusion"] == "equal"
+    assert pair["steps"] == {"any": 1800, "compared": 1800 - hard.sum()}
+    assert (pair["of_a"]["steps"], pair["of_b"]["steps"]) == (1800 - hard.sum(), 1800)
+    share = f"{hard.mean():.0%}".replace("%", " %")
+    assert f"skips:record has no result at {share} of the steps: A - B is of the " in " ".join(str(comparison).split())
+    assert "has no result at" in comparison.html
+    # Runs without a step that both have are no pairs.
+    halves = np.where(np.arange(60)[:, None, None] < 2, np.nan, errors)
+    halves[:2, -1] = errors[:2, -1]
+    others = errors.copy()
+    others[:2, 15:], others[:2, 14:15] = np.nan, errors[:2, 14:15]
+    (pair,) = credence.compare(record("some.h5", halves), record("others.h5", others, steps=15)).json
+    assert (pair["trials"], pair["pairs"]) == (60, 58)
+
+
 def test_what_cancels_over_all_steps_is_found_in_its_windows():
     rng = np.random.default_rng(9)
     errors, covariance = rng.normal(size=(2000, 50, 1)), np.ones((2000, 50, 1, 1))

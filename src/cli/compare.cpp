@@ -47,50 +47,53 @@ void check_paths(const std::vector<std::string>& paths) {
         if (!seen.insert(path).second) throw InputError("repeated file " + path, {}, "Name each once");
 }
 
-/// Adds the records of a path as arms of one scenario; `first` is the first record of all.
-void add_records(const std::string& path, std::string& first, Study& study) {
-    for (const std::string& record : records_in(path)) {
-        if (first.empty()) first = record;
-        else require_same_runs(first, record);
-        Study one = study_of(read_record(record, {}, segments_off));
-        if (study.scenarios.empty()) {
-            study = std::move(one);
-            study.scenarios.front().scenario.title = "record " + printable(path);
+/// The files of records of the same runs: those of a path are arms of one scenario.
+std::vector<StudyFile> read_record_files(const std::vector<std::string>& paths) {
+    std::vector<std::string> all;
+    std::vector<std::size_t> file_of;
+    for (std::size_t i = 0; i < paths.size(); ++i)
+        for (const std::string& record : records_in(paths[i])) all.push_back(record), file_of.push_back(i);
+    if (all.size() == 1) throw InputError("compare takes several records of the same runs", {}, "Give another");
+    SharedSteps shared;
+    std::vector<Record> records = read_same_runs(all, shared);
+    std::vector<StudyFile> files;
+    for (const std::string& path : paths) files.push_back({path, {}, true, {}, {}, shared.of_any, shared.of_all});
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        StudyFile& file = files[file_of[i]];
+        Study one = study_of(std::move(records[i]));
+        file.steps_of_arms.push_back(shared.of_each[i]);
+        if (file.study.scenarios.empty()) {
+            file.study = std::move(one);
+            file.study.scenarios.front().scenario.title = "record " + printable(file.path);
             continue;
         }
-        ScenarioResults &all = study.scenarios.front(), &other = one.scenarios.front();
+        ScenarioResults &arms = file.study.scenarios.front(), &other = one.scenarios.front();
         const auto named = [](const Column& column) { return column.name + " " + column.unit; };
-        if (!std::ranges::equal(all.columns, other.columns, {}, named, named))
-            throw InputError("cannot compare " + record + " with " + first,
+        if (!std::ranges::equal(arms.columns, other.columns, {}, named, named))
+            throw InputError("cannot compare " + all[i] + " with " + all.front(),
                              "they have other columns, or in other units", "Give records of the same runs");
-        all.arms.push_back(std::move(other.arms.front()));
+        arms.arms.push_back(std::move(other.arms.front()));
     }
+    return files;
 }
 
 /// Results files, or records of the same runs, which are called by their arms, or by scenario and arm.
 std::vector<StudyFile> read_files(const std::vector<std::string>& paths) {
     const bool records = kind_of(paths.front()) == FileKind::record;
     for (const std::string& path : paths) check_kind(path, {records ? FileKind::record : FileKind::results});
-    std::vector<StudyFile> files;
-    std::string first;  // record
-    std::vector<std::string> scenarios, arms;
-    for (const std::string& path : paths) {
-        files.push_back({path, records ? Study() : read_results(path, 0).study, records});
-        if (!records) continue;
-        add_records(path, first, files.back().study);
-        ScenarioResults& results = files.back().study.scenarios.front();
-        const bool is_one = results.arms.size() == 1;
-        if (is_one && paths.size() == 1)
-            throw InputError("compare takes several records of the same runs", {}, "Give another");
-        scenarios.push_back(std::exchange(results.scenario.name, "record"));
-        arms.push_back(is_one ? std::exchange(results.arms.front().name, "record") : "record");
-        if (files.back().study.trials != files.front().study.trials)
-            throw InputError("cannot compare " + path + " with " + paths.front(),
-                             "it has " + std::to_string(files.back().study.trials) + " trials, not " +
-                                 std::to_string(files.front().study.trials),
-                             "Give records of the same runs");
+    if (!records) {
+        std::vector<StudyFile> files;
+        for (const std::string& path : paths) files.push_back({path, read_results(path, 0).study});
+        return files;
     }
-    if (records && !std::ranges::count(arms, "record")) {
+    std::vector<StudyFile> files = read_record_files(paths);
+    std::vector<std::string> scenarios, arms;
+    for (StudyFile& file : files) {
+        ScenarioResults& results = file.study.scenarios.front();
+        scenarios.push_back(std::exchange(results.scenario.name, "record"));
+        arms.push_back(results.arms.size() == 1 ? std::exchange(results.arms.front().name, "record") : "record");
+    }
+    if (!std::ranges::count(arms, "record")) {
         const bool differ = std::set<std::string>(arms.begin(), arms.end()).size() == arms.size();
         for (std::size_t i = 0; i < files.size(); ++i)
             files[i].label = differ ? arms[i] : scenarios[i] + ":" + arms[i];

@@ -7,7 +7,6 @@
 
 #include "files/hdf5/slab.hpp"
 #include "record/read.hpp"
-#include "record/same_runs.hpp"
 
 #include <algorithm>
 
@@ -147,34 +146,40 @@ auto of_arm(const Handle& root, const std::string& file, const std::string& arm,
     return at_path(root, name + "/", [&](const Handle& record, const std::string&) { return use(record); });
 }
 
-/// Calls `use` with the place of a record and its arm.
-void with_record(const std::string& path, const std::function<void(const FileSource&)>& use) {
+/// Calls `use` with the group of a record.
+template <class Use>
+auto of_record(const std::string& path, const Use& use) {
     const auto named = parted(path);
-    hdf5::read_file(named.first,
-                    "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
-                    "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
-                    "name component groups in the attribute `groups`, such as `pose 0:3, feature_1 3:5`",
-                    [&](const Handle& root) {
-                        return of_arm(root, named.first, named.second, [&](const Handle& group) {
-                            use(FileSource(group));
-                            return true;
-                        });
-                    });
+    return hdf5::read_file(named.first,
+                           "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
+                           "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
+                           "name component groups in the attribute `groups`, such as `pose 0:3, feature_1 3:5`",
+                           [&](const Handle& root) { return of_arm(root, named.first, named.second, use); });
+}
+
+/// `shared`: the steps that count; none: all.
+Record read_steps(const std::string& path, const std::function<void(const Progress&)>& progress, int segments,
+                  const SharedSteps* shared) {
+    const ReopenRecord reopen = [path](const auto& use) {
+        of_record(path, [&](const Handle& group) { return use(RecordReader(FileSource(group))), true; });
+    };
+    Record read = of_record(path, [&](const Handle& group) {
+        const FileSource source(group);
+        RecordReader reader(source);
+        if (shared != nullptr)
+            reader.compare([shared](std::int64_t trial, int step) { return shared->have(trial, step); });
+        Record record = read_reopenable(std::move(reader), path, progress, segments, reopen);
+        if (source.has_attribute("log", "")) record.log = source.text("log", "");
+        return record;
+    });
+    if (const std::string arm = parted(path).second; !arm.empty()) read.results.arms.front().name = arm;
+    return read;
 }
 
 }  // namespace
 
 Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress, int segments) {
-    Record record;
-    const ReopenRecord reopen = [path](const auto& use) {
-        with_record(path, [&](const FileSource& source) { use(RecordReader(source)); });
-    };
-    with_record(path, [&](const FileSource& source) {
-        record = read_reopenable(RecordReader(source), path, progress, segments, reopen);
-        if (source.has_attribute("log", "")) record.log = source.text("log", "");
-    });
-    if (const std::string arm = parted(path).second; !arm.empty()) record.results.arms.front().name = arm;
-    return record;
+    return read_steps(path, progress, segments, nullptr);
 }
 
 std::string record_file(const std::string& path) { return parted(path).first; }
@@ -186,18 +191,25 @@ std::vector<std::string> records_in(const std::string& path) {
 }
 
 void require_same_runs(const std::string& first, const std::string& path) {
-    const std::string what = "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n]";
-    const auto read = [&](const std::string& one, const std::function<bool(const Handle&)>& use) {
-        const auto named = parted(one);
-        return hdf5::read_file(named.first, what,
-                               [&](const Handle& root) { return of_arm(root, named.first, named.second, use); });
-    };
-    read(first, [&](const Handle& one) {
-        return read(path, [&](const Handle& other) {
+    of_record(first, [&](const Handle& one) {
+        return of_record(path, [&](const Handle& other) {
             require_same_runs(FileSource(one), FileSource(other));
             return true;
         });
     });
+}
+
+std::vector<Record> read_same_runs(const std::vector<std::string>& paths, SharedSteps& shared) {
+    for (const std::string& path : paths) {
+        if (path != paths.front()) require_same_runs(paths.front(), path);
+        of_record(path, [&](const Handle& group) {
+            shared.add(RecordReader(FileSource(group)));
+            return true;
+        });
+    }
+    std::vector<Record> records;
+    for (const std::string& path : paths) records.push_back(read_steps(path, {}, segments_off, &shared));
+    return records;
 }
 
 }  // namespace credence

@@ -2,7 +2,10 @@
 // A record in an HDF5 file.
 
 #include "files/hdf5/handle.hpp"
+#include "record/same_runs.hpp"
 #include "record/source.hpp"
+
+#include <credence/record.hpp>
 
 #include <optional>
 #include <string>
@@ -29,6 +32,10 @@ private:
 /// The records of a file, by the paths that `read_record` takes: its own, or FILE:ARM for each group that the root's
 /// attribute `arms` names; of FILE:ARM that one. Throws InputError where it cannot be read.
 std::vector<std::string> records_in(const std::string& path);
+/// Records of the same runs, by their paths, with the steps that all have. Throws InputError naming what shows that one
+/// is not of the runs of the first [require_same_runs].
+std::vector<Record> read_same_runs(const std::vector<std::string>& paths, SharedSteps& shared);
+
 /// The file of such a path.
 std::string record_file(const std::string& path);
 

@@ -40,6 +40,8 @@ public:
     explicit RecordReader(const RecordSource& source, std::int64_t part_numbers = (std::int64_t{64} << 20) / 8);
 
     const RecordShape& shape() const { return layout_.shape; }
+    /// Lets only these steps count.
+    void compare(std::function<bool(std::int64_t trial, int step)> steps) { layout_.shape.compared = std::move(steps); }
     /// Of truth and estimate, where they lie on a manifold.
     std::optional<Manifold>& manifold() { return layout_.data.manifold; }
 

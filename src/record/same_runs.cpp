@@ -1,7 +1,14 @@
 #include "record/same_runs.hpp"
 
+#include <credence/text.hpp>
+
+#include "record/presence.hpp"
+#include "record/read.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <string_view>
 
 namespace credence {
 
@@ -31,6 +38,13 @@ std::optional<std::uint64_t> first_difference(const RecordDataset& a, const Reco
     return std::nullopt;
 }
 
+void require_equal(std::int64_t here, std::int64_t first, const std::string& what) {
+    if (here != first)
+        throw RecordError("/", "has another number of " + what + ": " + std::to_string(here) +
+                                   ", and the first record " + std::to_string(first),
+                          "Give records of the same runs and the same state");
+}
+
 }  // namespace
 
 void require_same_runs(const RecordSource& first, const RecordSource& record) {
@@ -39,6 +53,19 @@ void require_same_runs(const RecordSource& first, const RecordSource& record) {
         throw RecordError(record_attribute_place("seed"), "is " + std::to_string(*seed) + ", and that of the first "
                           "record " + std::to_string(*other) + ": trials of different seeds are no pairs",
                           "Give records of the same seed");
+    for (const char* name : {"component_names", "component_units"}) {
+        if (!first.has_attribute(name) || !record.has_attribute(name)) continue;
+        const ListEntries here = record.list(name), there = first.list(name);
+        const auto text = [](const ListEntries& entries) {
+            std::vector<std::string> texts;
+            for (const std::vector<std::string>& words : entries) texts.push_back(joined(words, " "));
+            return printable(joined(texts));
+        };
+        if (here != there)
+            throw RecordError(record_attribute_place(name),
+                              "is " + text(here) + ", and that of the first record " + text(there),
+                              "Give records of the same components in the same units and order");
+    }
     for (const char* path : {"error", "estimate", "trial", "truth", "time", "steps"}) {
         if (!first.has(path) || !record.has(path)) continue;
         const DatasetPointer a = first.open(path, Numbers::any), b = record.open(path, Numbers::any);
@@ -50,6 +77,37 @@ void require_same_runs(const RecordSource& first, const RecordSource& record) {
             throw RecordError(b->place(), "differs from that of the first record in entry " + std::to_string(*row) +
                                               ": these are other runs", remedy);
     }
+}
+
+void SharedSteps::add(const RecordReader& reader) {
+    const RecordShape& shape = reader.shape();
+    const bool first = of_each.empty();
+    if (first) {
+        trials = shape.trials, steps = shape.steps, n = shape.n;
+        states.resize(static_cast<std::size_t>(trials * steps));
+    }
+    require_equal(shape.trials, trials, "runs");
+    require_equal(shape.steps, steps, "steps");
+    require_equal(shape.n, n, "components that are not known exactly");
+    of_each.push_back(0);
+    of_any = of_all = 0;
+    PresenceChecker presence(shape);
+    CheckedStep checked;
+    each_step(reader, [&](const RecordStep& step) {
+        if (step.step == 0) presence.start_trial();
+        std::uint32_t &known = states[static_cast<std::size_t>(step.trial * steps + step.step)], state = 0;
+        // A run with a broken step fails, so that it is in no pair.
+        if (shape.covers(step.trial, step.step) && presence.check(step, checked) != Presence::absent) {
+            const std::string_view here(checked.here.data(), checked.here.size());
+            const bool whole = here.find('\0') == here.npos;
+            state = whole ? 2 : std::max<std::uint32_t>(3, std::hash<std::string_view>()(here) & 0xffffffff);
+            ++of_each.back();
+        }
+        if (first) known = state;
+        else if (known != state) known = 1;
+        of_any += known > 0;
+        of_all += known > 1;
+    });
 }
 
 }  // namespace credence

@@ -75,8 +75,8 @@ void RecordTotals::add_covered(const RecordStep& step) {
 
 /// Ends a trial. One that has fewer steps than it should has failed, unless the record declares a lower number.
 void RecordTotals::check_end(std::int64_t trial) {
-    if (present_.empty()) return note({trial, 0}, Status::non_finite, "no step exists: every error is NaN");
-    const int end = static_cast<int>(present_.back()) + 1, asked = shape_.steps_of(trial);
+    if (end_ == 0) return note({trial, 0}, Status::non_finite, "no step exists: every error is NaN");
+    const int end = end_, asked = shape_.steps_of(trial);
     if (end == asked) return check_copy(trial);
     const std::string of = "the trial ends after " + std::to_string(end) + " of ";
     const bool declared = !shape_.declared.empty();
@@ -86,7 +86,7 @@ void RecordTotals::check_end(std::int64_t trial) {
 }
 
 void RecordTotals::check_copy(std::int64_t trial) {
-    if (copies_ == Copies::count) return;
+    if (copies_ == Copies::count || present_.empty()) return;
     const std::optional<std::int64_t> first = copy_finder_.end_trial(trial);
     if (!first) return;
     note({trial, 0}, Status::non_finite,
@@ -98,6 +98,7 @@ void RecordTotals::start_trial() {
     status_ = Status::completed;
     presence_.start_trial();
     present_.clear();
+    end_ = 0;
     products_.start_trial();
     moments_.start_trial();
     copy_finder_.start_trial();
@@ -111,6 +112,8 @@ void RecordTotals::add_figures(const RecordStep& step, const CheckedStep& checke
     if (!trouble.empty()) return note(step, Status::covariance_not_positive_definite, trouble);
     if (!figures_add_up(values, all_series_.list.size()))
         return note(step, Status::non_finite, "a figure of this step is beyond 1e140");
+    end_ = step.step + 1;
+    if (shape_.compared && !shape_.compared(step.trial, step.step)) return products_.leave_out();
     if (judge_.innovation_rounding() > accuracy_of_nis) {
         judge_.leave_out_innovation(values, products_.now.data());
         ++innovations_left_out_;
@@ -202,7 +205,7 @@ void RecordTotals::add_columns(std::int64_t trial) {
     row[at_status] = static_cast<double>(status_);
     if (!fill_failed(columns, row.data())) {
         if (shape_.has_errors) {
-            row[RecordColumn::trace_P] = at(all_series_.variance, present_.back());
+            row[RecordColumn::trace_P] = present_.empty() ? nan : at(all_series_.variance, present_.back());
             row[RecordColumn::mean_trace_P] = over_steps(all_series_.variance) / count(all_series_.variance);
             row[RecordColumn::log_score] = log_score_ / static_cast<double>(present_.size());
             row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_group(shape_));

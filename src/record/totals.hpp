@@ -104,7 +104,8 @@ private:
     CheckedStep checked_;
     Status status_ = Status::completed;
     RecordTrouble trouble_;                      ///< why the trial failed, if it did
-    std::vector<std::size_t> present_;           ///< steps that exist, in order
+    std::vector<std::size_t> present_;           ///< steps that exist and count, in order
+    int end_ = 0;                                ///< behind the last step that exists
     std::vector<double> values_;                 ///< [steps, series_count], only of steps that exist
     /// [steps] of the state, if there is a joint covariance; else empty.
     std::vector<int> dimensions_;

@@ -64,20 +64,6 @@ CarryingPairs carrying_pairs(const std::vector<double>& differences, const Summa
     return carrying;
 }
 
-/// Sum of the probabilities of `from`, `from` + step ... of `of_a` when `both` of `of_a` + `of_b` are drawn, relative to
-/// that of `from`, which is left out; and of those that are not larger, up to rounding.
-std::pair<double, double> tables_beyond(double from, double both, double of_a, double of_b, int step) {
-    double all = 0, rare = 0, weight = 1;
-    for (double k = from; weight > 1e-20 && std::isfinite(all); k += step) {
-        const double up = step > 0 ? k : k - 1;  // to `up` + 1 from `up`, or back
-        const double ratio = (of_a - up) * (both - up) / ((up + 1) * (of_b - both + up + 1));
-        weight *= step > 0 ? ratio : 1 / ratio;
-        all += weight;
-        if (weight <= 1 + 1e-7) rare += weight;
-    }
-    return {all, rare};
-}
-
 }  // namespace
 
 double sign_test(std::int64_t below, std::int64_t above) {
@@ -87,13 +73,18 @@ double sign_test(std::int64_t below, std::int64_t above) {
 }
 
 double fisher_exact(std::int64_t a, std::int64_t of_a, std::int64_t b, std::int64_t of_b) {
-    const auto part = [&](int step) {
-        return tables_beyond(static_cast<double>(a), static_cast<double>(a + b), static_cast<double>(of_a),
-                    static_cast<double>(of_b), step);
-    };
-    const auto [above, rare_above] = part(1);
-    const auto [below, rare_below] = part(-1);
-    return std::min(1.0, (1 + rare_above + rare_below) / (1 + above + below));
+    const double both = static_cast<double>(a + b), A = static_cast<double>(of_a), B = static_cast<double>(of_b);
+    double all = 1, rare = 1;  // sums of probabilities relative to that of the table that was seen
+    for (const int step : {1, -1}) {
+        double weight = 1, k = static_cast<double>(step > 0 ? a : a - 1);
+        for (; weight > 1e-20 && std::isfinite(all); k += step) {
+            const double ratio = (A - k) * (both - k) / ((k + 1) * (B - both + k + 1));  // of k + 1 to k
+            weight *= step > 0 ? ratio : 1 / ratio;
+            all += weight;
+            if (weight <= 1 + 1e-7) rare += weight;
+        }
+    }
+    return std::min(1.0, rare / all);
 }
 
 PairedComparison compare_paired(const std::vector<double>& a, const std::vector<double>& b, std::uint64_t root_seed,

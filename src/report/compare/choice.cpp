@@ -111,7 +111,7 @@ private:
             return files_.size() == 1 ? arm.name : labels_[file] + ":" + arm.name;
         };
         const ChosenPair pair{{in_a, a, label(file_a, a)}, {in_b, b, label(file_b, b)}, files_[file_a], files_[file_b]};
-        if (file_a != file_b) check_same_world(pair);
+        if (file_a != file_b) check_same_world(pair), check_same_units(pair);
         pairs_.push_back(pair);
     }
 

@@ -28,6 +28,9 @@ void check_same_draws(const std::vector<StudyFile>& files);
 /// Throws InputError naming the first key by which the scenarios of two files have different truths or draws.
 void check_same_world(const ChosenPair& pair);
 
+/// Throws InputError naming a column that is in other units in the files of a pair.
+void check_same_units(const ChosenPair& pair);
+
 /// Whether the scenarios of a pair differ in a sensor: they are different worlds, which share their draws.
 bool of_different_worlds(const ComparedPair& pair);
 

@@ -19,7 +19,9 @@ std::vector<std::int64_t> counted(const std::vector<double>& statuses) {
 
 /// Counts of the arm; `statuses`: of the trials that are compared, by how they ended.
 ComparedSide side_of(const ComparedArm& compared, const StudyFile& file, const std::vector<std::int64_t>& statuses) {
-    ComparedSide side{file.path, "study " + study_hash(file.study), compared.results.trials, 0, 0, {}};
+    ComparedSide side{file.path, "study " + study_hash(file.study), compared.results.trials, 0, 0, 0, {}};
+    if (const auto arm = static_cast<std::size_t>(&compared.arm - compared.results.arms.data()); file.is_record)
+        side.steps = file.steps_of_arms[arm];
     for (std::size_t status = 0; status < statuses.size(); ++status)
         if (failed(static_cast<Status>(status))) side.failed += statuses[status];
     side.diverged = statuses[static_cast<std::size_t>(Status::diverged)];
@@ -58,6 +60,8 @@ ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
     pair.comparison = compare_arms(chosen.a, chosen.b, root_seed);
     pair.title = a.scenario.title;
     pair.complete = chosen.file_a.study.complete && chosen.file_b.study.complete;
+    pair.steps_of_any = chosen.file_a.steps_of_any;
+    pair.steps_of_all = chosen.file_a.steps_of_all;
     pair.keep = a.keep;
     if (&a == &b) {
         pair.trials = a.trials;

@@ -18,6 +18,9 @@ struct StudyFile {
     Study study;
     bool is_record = false;  ///< or records, as arms of one scenario
     std::string label{};  ///< what a record is called; empty: as an arm of its file
+    /// Of records: the steps at which each arm has results; those at which any record has, and all.
+    std::vector<std::int64_t> steps_of_arms{};
+    std::int64_t steps_of_any = 0, steps_of_all = 0;
 };
 
 /// An arm as requested: its name, or that of its controller alone.
@@ -57,6 +60,7 @@ struct ComparedSide {
     std::string file, source;               ///< its path, and `study UUID`
     std::int64_t trials = 0;                ///< of its file
     std::int64_t failed = 0, diverged = 0;  ///< of the trials that are compared
+    std::int64_t steps = 0;                 ///< of a record: at which it has results
     std::int64_t failed_trials() const { return failed + diverged; }
     /// By column, over the pairs: mean of A - mean of B = mean of A - B. NaN where no trial is kept and some trial is
     /// in no pair.
@@ -69,6 +73,7 @@ struct ComparedPair {
     std::string title;  ///< the scenario's
     ComparedSide a, b;
     std::int64_t trials = 0;                 ///< that both have, from 0 on; those that failed in A or B are no pairs
+    std::int64_t steps_of_any = 0, steps_of_all = 0;  ///< of records: at which any has results, and those compared
     bool complete = true;                    ///< the studies of both are
     Keep keep = Keep::trials;
     std::vector<KeyDifference> differences;  ///< of scenarios of different files, but for titles and published values

@@ -13,8 +13,10 @@ namespace credence {
 namespace {
 
 Json side_json(const ComparedSide& side) {
-    return {{"file", side.file},     {"source", side.source},     {"trials", side.trials},
-            {"failed", side.failed}, {"diverged", side.diverged}, {"failed_trials", side.failed_trials()}};
+    Json json{{"file", side.file},     {"source", side.source},     {"trials", side.trials},
+              {"failed", side.failed}, {"diverged", side.diverged}, {"failed_trials", side.failed_trials()}};
+    if (side.steps > 0) json["steps"] = side.steps;
+    return json;
 }
 
 /// What is said of a column; CSV has the same.
@@ -50,6 +52,7 @@ Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
     for (const KeyDifference& key : pair.differences) behind["differences"][key.key] = Json::array({key.a, key.b});
     behind["of_a"] = side_json(pair.a);
     behind["of_b"] = side_json(pair.b);
+    if (pair.steps_of_any > 0) behind["steps"] = {{"any", pair.steps_of_any}, {"compared", pair.steps_of_all}};
     behind["root_seed"] = root_seed;
     behind["complete"] = pair.complete;
     for (const bool lower : {true, false}) {
@@ -64,8 +67,8 @@ Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
 
 /// The numbers of a row, by their names in JSON; of an interval there are both ends.
 constexpr const char* csv_numbers[] = {"mean_a", "mean_b", "mean", "se", "ci95", "bootstrap95", "median", "sd",
-                                       "below", "above", "ties", "sign_p", "carried_by", "wilcoxon_z", "wilcoxon_p", "holm_p", "effect_size",
-                                       "variance_reduction"};
+                                       "below", "above", "ties", "sign_p", "carried_by", "wilcoxon_z", "wilcoxon_p",
+                                       "holm_p", "effect_size", "variance_reduction"};
 
 std::string csv_of(const ComparedPair& pair, const ComparedColumn& column) {
     const Json json = column_json(pair, column);

@@ -62,6 +62,20 @@ std::string carried(const ComparedPair& pair) {
            std::to_string(pair.pairs()) + " trials carry the mean (" + joined(trials) + ")";
 }
 
+/// Which of the two has no result where other records have, maybe because these steps are hard.
+std::string steps_text(const ComparedPair& pair) {
+    if (pair.steps_of_all == pair.steps_of_any) return "";
+    const auto share = [&](std::int64_t steps) {
+        return percent(static_cast<double>(steps) / static_cast<double>(pair.steps_of_any)) + " of the steps";
+    };
+    std::vector<std::string> lacking;
+    for (const auto& [name, side] : {std::pair(pair.comparison.a, &pair.a), std::pair(pair.comparison.b, &pair.b)})
+        if (side->steps < pair.steps_of_any)
+            lacking.push_back(name + " has no result at " + share(pair.steps_of_any - side->steps));
+    return joined(lacking, " and ") + (lacking.empty() ? "" : ": ") + "A - B is of the " + share(pair.steps_of_all) +
+           " at which all records have results of the same components; ";
+}
+
 /// That on trials that failed or diverged, which comes before the means of the others.
 std::string failure_conclusion(const ComparedPair& pair) {
     if (pair.failures == Conclusion::not_shown) return "";
@@ -189,7 +203,7 @@ std::string others_text(const ComparedPair& pair) {
 }  // namespace
 
 std::string conclusion_text(const ComparedPair& pair) {
-    return failure_conclusion(pair) + first_conclusion(pair) + others_text(pair);
+    return steps_text(pair) + failure_conclusion(pair) + first_conclusion(pair) + others_text(pair);
 }
 
 std::string compare_notes(const CompareReport& report) {

@@ -35,6 +35,19 @@ void check_same_world(const ChosenPair& pair) {
                              "Compare runs that differ in filter, control, planner, arms or sensor only");
 }
 
+void check_same_units(const ChosenPair& pair) {
+    for (const Column& column : pair.a.results.columns) {
+        // Those of a record's state are told by its components' units, if both records have these [same_runs.hpp].
+        if (pair.file_a.is_record && (column.name.ends_with("trace_P") || column.name == "pose_error")) continue;
+        const auto same = std::ranges::find(pair.b.results.columns, column.name, &Column::name);
+        if (same != pair.b.results.columns.end() && same->unit != column.unit)
+            throw InputError("cannot compare " + pair.file_a.path + " with " + pair.file_b.path,
+                             column.name + " is in " + printable(column.unit) + " in " + pair.file_a.path + " and in " +
+                                 printable(same->unit) + " in " + pair.file_b.path,
+                             "Give both in the same units");
+    }
+}
+
 bool of_different_worlds(const ComparedPair& pair) {
     return std::any_of(pair.differences.begin(), pair.differences.end(),
                        [](const KeyDifference& difference) { return is_of_the_sensor(difference.key); });
