@@ -152,7 +152,8 @@ Record read_record(const std::string& path, const std::function<void(const Progr
 Evidence evidence_of(const Record& record);
 
 /// Throws InputError naming what shows that the runs of a record are not those of the first: another `seed`, names,
-/// units or numbers of components, numbers of runs or steps, `trial`, `truth`, `time` or `steps`. What only one of them has shows nothing.
+/// units or numbers of components, numbers of runs or steps, `trial`, `truth`, `time` or `steps`. What only one of them
+/// has shows nothing.
 void require_same_runs(const std::string& first, const std::string& path);
 
 /// An array in memory that stands for a dataset of a record.

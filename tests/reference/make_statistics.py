@@ -198,7 +198,8 @@ def paired(a, b):
     sign = 1 if positive > len(d[d != 0]) * (len(d[d != 0]) + 1) / 4 else -1
     return {"a": a, "b": b, "pairs": len(d), "mean": math.fsum(d) / len(d), "ci95": t_interval(d),
             "bootstrap95": interval, "median": np.median(d), "wins_a": np.mean(x < y), "wins_b": np.mean(x > y),
-            "ties": np.mean(x == y), "sign_p": stats.binomtest(int((x < y).sum()), int((x != y).sum())).pvalue,
+            "ties": np.mean(x == y),
+            "sign_p": stats.binomtest(int((x < y).sum()), int((x != y).sum())).pvalue,
             "wilcoxon_z": sign * abs(test.zstatistic), "wilcoxon_p": test.pvalue, "effect_size": d.mean() / d.std(ddof=1),
             "variance_reduction": (x.var(ddof=1) + y.var(ddof=1)) / d.var(ddof=1)}
 
