@@ -126,7 +126,7 @@ inline Record read_written(const std::function<void(const Handle& root)>& write)
 
 /// The report of what `write` writes, and of a drawn record.
 inline Report report_written(const std::function<void(const Handle& root)>& write, const Limits& limits = {}) {
-    const TemporaryFolder folder;  // a report may read the record again
+    const TemporaryFolder folder;  // the report may read the record again
     write_file(folder / "record.h5", write);
     return make_record_report(read_record(folder / "record.h5"), "record.h5", limits);
 }

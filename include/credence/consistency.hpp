@@ -132,6 +132,20 @@ struct Attribution {
     Interval interval;   ///< Student's, 95 %
 };
 
+/// What can be said of the errors' size over P's where the truth has errors of its own, of covariance R.
+struct TruthFactor {
+    std::string group;
+    double nees = 0;            ///< NEES/dimension by P + R, of errors about their mean
+    Interval nees95, factor;    ///< its 95 % interval; in which the mean squared error over P's lies
+    double deciding_sigma = 0;  ///< so many times the truth's sigma adds half of the margin to NEES/dimension
+};
+
+/// How far the truth would have to be off, sigma of each component, for an optimistic verdict on a log to be wrong.
+struct TurningPoint {
+    std::string where, unit;            ///< a component group or a component, whose components have this unit
+    double vanishes = 0, right = 0;     ///< what is too large is no finding; NEES/dimension is 1
+};
+
 struct Consistency {
     Verdict verdict = Verdict::undecided;
     Limits limits;
@@ -149,6 +163,8 @@ struct Consistency {
     Interval smallest_faults{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
     TrialsNeeded trials_needed;        ///< undecided only, and not where more trials cannot help
     std::vector<Suspicion> suspicions; ///< undecided only
+    std::vector<TruthFactor> truth;    ///< by group; empty without R
+    std::vector<TurningPoint> turning_points;  ///< by unit; empty with R
 };
 
 /// Student's 95 % interval of NEES/dimension, averaged over the steps.

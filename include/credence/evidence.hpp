@@ -105,6 +105,8 @@ struct BiasEvidence {
     double largest_square = 0;  ///< of `square`'s numbers
     /// In sigmas, from the start to the end of the run in which it is largest; 0 where none is shown.
     double drift = 0, drift_half_width = 0;
+    /// sqrt(R_jj/(P + R)_jj), R of the truth's own errors: the mean over the steps, and the largest; 0 without R.
+    double truth = 0, largest_truth = 0;
 };
 
 /// The numbers of single trials from which directions are computed [src/statistics/moments/trial_moments.hpp].
@@ -163,6 +165,8 @@ struct SegmentEvidence {
     }
 };
 
+struct TruthEvidence;
+
 struct Evidence {
     std::int64_t trials = 0;                   ///< over which the evidence is computed
     std::int64_t all_trials = 0;
@@ -187,6 +191,8 @@ struct Evidence {
     bool of_innovations = false;                              ///< innovations stand for errors
     double epsilon = std::numeric_limits<double>::epsilon();  ///< relative spacing of the numbers of covariances
     SegmentEvidence segments;
+    /// With the covariance R of the truth's own errors; null without it.
+    std::shared_ptr<const TruthEvidence> truth;
     bool joint = true;                         ///< false: of a record without a covariance of the whole state
     /// Means and series of all finite trials, where diverged ones are left out; else null.
     std::shared_ptr<const Evidence> of_finite;
@@ -202,6 +208,15 @@ struct Evidence {
     int steps_together() const { return segments.count ? segments.steps : steps; }
     /// What is independent: `trials` or `segments`.
     std::string units() const { return segments.count ? "segments" : "trials"; }
+};
+
+/// What the covariance R of the truth's own errors adds to the evidence by P alone [docs/statistics.md, Uncertain
+/// truth].
+struct TruthEvidence {
+    Evidence added;                      ///< by P + R in place of P
+    std::optional<Evidence> centred;     ///< the same of errors about their mean over the trials, step by step
+    std::optional<Evidence> subtracted;  ///< by P - R, where the truth depends on the filter's own data
+    std::vector<double> shares;          ///< [groups] mean tr((P + R)^-1 R)/d, NaN where unknown
 };
 
 /// Computes the evidence from an arm's totals. It selects series by their roles only.

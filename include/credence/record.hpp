@@ -106,6 +106,11 @@ struct Record {
     std::vector<RunCurves> curves{};      ///< of runs fewer than `least_segments`
     std::string log{};    ///< as words of a shell: the log that it was made of, and how that was read; may be empty
     std::string chart{};  ///< of errors that differ between charts: `local`, `global` or `plain`; else empty
+    std::shared_ptr<const TruthEvidence> truth{};  ///< with the covariance of the truth's errors; null without it
+    /// Reads the record again, with members of one unit: of P + s^2 I over these, and of errors about the mean of
+    /// their run where there are fewer than `runs_that_tell`, the smallest s at which NEES/dimension is at most each of
+    /// these. Empty with `truth`.
+    std::function<std::vector<double>(const std::vector<int>& members, const std::vector<double>& nees)> truth_sigmas{};
     /// Each reads the record again, with its errors in another chart: the other of `local` and `global`, then, of
     /// poses, `plain`, the differences of positions in the world's frame. Empty where charts do not differ.
     std::vector<std::function<Record()>> in_other_charts{};
@@ -128,7 +133,8 @@ struct Record {
 /// - all optional: components that enter and leave the state; `covariance` [trial, step, n] of variances,
 ///   /group/NAME/covariance and /group/NAME/nees in place of a joint covariance; `truth` and `estimate` on a manifold
 ///   in place of `error`; the attributes `groups`, `row_groups`, `component_names`, `component_units` and `log`;
-///   `time`. What such a record cannot show is in `results.not_judged`.
+///   `time`; `truth_covariance` [n], [n, n], [step, n, n] or [trial, step, n, n] or the attribute `truth_sigma`, and
+///   `truth_dependent`. What such a record cannot show is in `results.not_judged`.
 /// A record of one trial may leave out the dimension of trials. Anything else in the file is ignored.
 ///
 /// A trial with a covariance (of the errors or the observed innovations) that is not positive definite has failed: the
@@ -145,8 +151,9 @@ struct Record {
 /// `segments` is the number of steps in a segment, segments_auto or segments_off.
 ///
 /// Throws InputError `FILE: PLACE: PROBLEM. REMEDY.` for any other deviation from this format. `progress` may be empty.
+/// `attributes` of the root take the place of those in the file.
 Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress = {},
-                   int segments = segments_auto);
+                   int segments = segments_auto, const std::map<std::string, std::string>& attributes = {});
 
 /// The evidence of its runs, and of their segments if these count.
 Evidence evidence_of(const Record& record);

@@ -46,12 +46,15 @@ RecordArray described(const std::string& path, const Array& array, double epsilo
     return described;
 }
 
+using Texts = std::map<std::string, std::string>;
+
 template <class Read>
 Said judgement(const std::string& name, const nb::dict& options, const Listener& listener, const Read& read) {
     const cli::Command& command = cli::judge_command();
     const cli::Parsed parsed = cli::parsed_of(command, {}, values_of(command, options));
     const Limits limits = cli::parse_limits(parsed);
     const int segments = cli::parse_segments(parsed);
+    const Texts truth = cli::parse_truth(parsed);
     const auto progress = [&, due = Due()](const Progress& now) mutable {
         if (!due(now)) return;
         if (must_end()) throw Failure("the verdict was not finished (Python ended). Wait for it.");
@@ -60,13 +63,12 @@ Said judgement(const std::string& name, const nb::dict& options, const Listener&
         if (listener) (*listener)(now.done, now.total);
     };
     return alone([&] {
-        return Said{[report = make_record_report(read(progress, segments), name, limits), name](
+        return Said{[report = make_record_report(read(progress, segments, truth), name, limits), name](
                         const std::string& format) { return cli::rendered(report, format, name, {}); }};
     });
 }
 
 using Arrays = std::map<std::string, std::pair<Array, double>>;
-using Texts = std::map<std::string, std::string>;
 using Dimensions = std::map<std::string, int>;
 
 RecordArrays record_of(const Arrays& arrays, const Texts& texts, const Lists& lists, const Dimensions& dimensions) {
@@ -85,14 +87,16 @@ Said judge(const Arrays& arrays, const Texts& texts, const Lists& lists, const D
     const std::string name = bytes_of(called);
     const RecordArrays record = record_of(arrays, texts, lists, dimensions);
     return judgement(name, options, listener,
-                     [&](const auto& progress, int segments) { return read_record(record, name, progress, segments); });
+                     [&](const auto& progress, int segments, const Texts&) {
+                         return read_record(record, name, progress, segments);
+                     });
 }
 
 Said judge_file(const nb::bytes& file, const nb::dict& options, const Listener& listener) {
     const std::string path = bytes_of(file);
-    return judgement(path, options, listener, [&](const auto& progress, int segments) {
+    return judgement(path, options, listener, [&](const auto& progress, int segments, const Texts& truth) {
         cli::check_kind(path, {cli::FileKind::record});
-        return read_record(path, progress, segments);
+        return read_record(path, progress, segments, truth);
     });
 }
 

@@ -32,7 +32,8 @@ def invalid(name: str, why: str, remedy: str) -> InputError:
 def behind_steps(name: str) -> tuple[int, ...]:
     """How many dimensions an array may have behind those of trials and steps."""
     last = name.split("/")[-1]
-    return {"nees": (0,), "time": (0,), "covariance": (1, 2), "innovation_covariance": (2,)}.get(last, (1,))
+    return {"nees": (0,), "time": (0,), "covariance": (1, 2), "innovation_covariance": (2,),
+            "truth_covariance": (2,)}.get(last, (1,))
 
 
 def _in_order(name: str, array: Any, single: bool) -> Any:
@@ -257,6 +258,10 @@ def prepared(record: Record, runs: object = None) -> dict[str, Array]:
     `runs` tells the runs apart where they lie below each other.
     """
     given = record.arrays | ({} if record.steps is None else {"steps": record.steps})
+    name = "truth_covariance"
+    same: dict[str, Array] = {}
+    if runs is not None and name in given and np.ndim(given[name]) < 3:  # one for all rows
+        same = {name: numbers(name, given.pop(name))}
     if runs is None:
         arrays = of_many_runs(given)
     elif "steps" in given:
@@ -269,7 +274,7 @@ def prepared(record: Record, runs: object = None) -> dict[str, Array]:
         _note_what_looks_like_steps_first(arrays["error"])
     _refuse_unknown_times(arrays)
     columns = {f"column/{name}": each for name, each in (record.columns or {}).items()}
-    return arrays | {place: np.atleast_1d(numbers(place, each)) for place, each in columns.items()}
+    return arrays | same | {place: np.atleast_1d(numbers(place, each)) for place, each in columns.items()}
 
 
 def described(array: Array) -> tuple[Array, float]:

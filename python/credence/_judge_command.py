@@ -19,7 +19,7 @@ from credence._names import joined, parted
 from credence._outputs import check_output, whole
 from credence._record import Record
 
-_of_judge = ("margin", "margin-direction", "bias", "failed", "segments", "format", "require")
+_of_judge = ("margin", "margin-direction", "bias", "failed", "segments", "format", "require", "truth-sigma")
 _of_tables = ("components", "time", "runs")
 _poses = ("manifold", "chart", "max_gap", "align", "body", "time_offset", "planar", "pair", "twist")
 _of_logs = ("truth", "topic", "truth_topic", "times", "rows", "names", "map", "units", "order", *_of_tables, *_poses)
@@ -93,7 +93,7 @@ def parser() -> argparse.ArgumentParser:
     for name in _of_judge:
         made.add_argument(f"--{name}", metavar="…", help="as of credence judge")
     made.add_argument("-o", "--output", metavar="FILE", help="as of credence judge")
-    for name in ("strict", "quiet", "overwrite"):
+    for name in ("strict", "quiet", "overwrite", "truth-dependent"):
         made.add_argument(f"--{name}", action="store_true", help="as of credence judge")
     return made
 
@@ -249,7 +249,8 @@ def main(given: argparse.Namespace) -> int:
     """Run the command and return its exit code."""
     values = {name: getattr(given, name.replace("-", "_")) for name in _of_judge}
     options = [f"--{name}={value}" for name, value in values.items() if value is not None]
-    options += [f"--{name}" for name in ("strict", "overwrite") if getattr(given, name)]
+    flags = ("strict", "overwrite", "truth-dependent")
+    options += [f"--{name}" for name in flags if getattr(given, name.replace("-", "_"))]
     options += [f"--output={os.path.abspath(given.output)}"] if given.output else []
     try:
         if given.record and Path(given.record).suffix != ".h5":

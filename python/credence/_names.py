@@ -80,6 +80,13 @@ def _names(argument: str, given: Any) -> Entries:
     return [[_name(argument, one)] for one in given]
 
 
+def truth_text(given: Any) -> str:
+    """`truth_sigma` or `truth_dependent` as a record has it."""
+    if isinstance(given, bool):
+        return "yes" if given else "no"
+    return ",".join(f"{name}={value}" for name, value in given.items()) if isinstance(given, Mapping) else str(given)
+
+
 def texts_and_lists(given: Mapping[str, Any]) -> tuple[dict[str, str], dict[str, Entries]]:
     """The attributes of a record that are texts, and those that are lists."""
     texts = {argument: text for argument, text in given.items() if isinstance(text, str)}
@@ -87,6 +94,8 @@ def texts_and_lists(given: Mapping[str, Any]) -> tuple[dict[str, str], dict[str,
     for argument in given.keys() - texts.keys():
         if argument in ("manifold", "chart", "quaternion"):
             texts[argument] = _name(argument, given[argument])
+        elif argument.startswith("truth_"):
+            texts[argument] = truth_text(given[argument])
         else:
             entries = _groups if argument.endswith("groups") else _names
             lists[argument] = entries(argument, given[argument])

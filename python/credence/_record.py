@@ -11,8 +11,14 @@ from credence._names import Named, dimensions, texts_and_lists
 
 Groups = str | Mapping[str, int | Sequence[int]] | Sequence[str]
 
-_arrays = ("error", "covariance", "innovation", "innovation_covariance", "truth", "estimate", "nees", "time")
-_texts = ("groups", "row_groups", "component_names", "component_units", "manifold", "chart", "quaternion", "dimension")
+_arrays = (
+    "error", "covariance", "innovation", "innovation_covariance", "truth", "estimate", "nees", "time",
+    "truth_covariance",
+)  # fmt: skip
+_texts = (
+    "groups", "row_groups", "component_names", "component_units", "manifold", "chart", "quaternion", "truth_sigma",
+    "truth_dependent", "dimension",
+)  # fmt: skip
 
 
 @dataclass(eq=False, repr=False, slots=True)
@@ -45,6 +51,14 @@ class Record:
     truth, estimate : arrays [trial, step, q]
         In place of `error`: states on a `manifold`, such as ``"SE3 x R6"``, whose error is taken in the `chart`
         ``"local"`` or ``"global"``; `quaternion` is ``"wxyz"`` or ``"xyzw"``.
+    truth_covariance : array [n], [n, n], [step, n, n] or [trial, step, n, n]
+        Of the truth's own errors, in the chart and units of `error`: variances, or matrices that are the same at all
+        steps, in all runs, or of each; an upper bound [docs/statistics.md, Uncertain truth].
+    truth_sigma : float, str or dict
+        In its place, their standard deviation: ``0.005`` for every component in its unit, or of groups and
+        components, ``{"position": 0.005, "heading": "0.1deg"}``; the others are exact.
+    truth_dependent : bool
+        Whether the truth was made of data that the filter used, as by a smoother.
     group_covariance : dict of arrays [trial, step, d, d]
         Covariances of groups, by their names.
     nees, group_nees : array [trial, step], dict of such arrays
@@ -68,6 +82,9 @@ class Record:
     time: object = None
     truth: object = None
     estimate: object = None
+    truth_covariance: object = None
+    truth_sigma: float | str | Mapping[str, float | str] | None = None
+    truth_dependent: bool | None = None
     manifold: str | None = None
     chart: str | None = None
     quaternion: str | None = None

@@ -14,6 +14,7 @@ from credence import InputError, _core
 from credence import _doors as doors
 from credence._calls import progress_bar
 from credence._errors import invalid, wrong
+from credence._names import truth_text
 from credence._record import Record
 from credence._results import Printed
 
@@ -65,6 +66,12 @@ class Verdict(Printed):
     def findings(self) -> list[Finding]:
         """What speaks against the filter."""
         return [Finding(**one) for one in self["findings"]]
+
+    @property
+    def turning_points(self) -> list[dict[str, Any]]:
+        """For an optimistic verdict on a log, by unit: the standard deviation of the truth's errors from which on
+        nothing is found too large in ``where`` (``vanishes``), and at which P would be ``right``."""
+        return list(self.json[0].get("turning_points", []))
 
     @property
     def reached(self) -> dict[str, float | None]:
@@ -168,7 +175,8 @@ def judge(asked: _Asked) -> Verdict:
     """Say whether a filter's covariance can be believed, by its errors in many independent runs.
 
     Takes the fields of a `Record` as arguments, of which `error` and `covariance` are enough for most filters; or, in
-    place of `error`, a Record or the path of one in a file [docs/judge.md], and then none of the other fields.
+    place of `error`, a Record or the path of one in a file [docs/judge.md], and then none of the other fields; a path
+    may have `truth_sigma` and `truth_dependent` beside it.
 
     Parameters
     ----------
@@ -202,10 +210,14 @@ def judge(asked: _Asked) -> Verdict:
         A ValueError: arrays do not fit each other, a covariance is not symmetric, an option is out of its range.
     """
     options = {name: getattr(asked, name) for name in ("margin", "margin_direction", "bias", "failed", "segments")}
-    data = asked.given().keys() & {"runs", *(field.name for field in fields(Record))}
+    of_truth = {"truth_sigma", "truth_dependent"} if isinstance(asked.error, (str, os.PathLike)) else set()
+    data = asked.given().keys() & {"runs", *(field.name for field in fields(Record))} - of_truth
     if isinstance(asked.error, (str, os.PathLike, Record)) and data != {"error"}:
         raise TypeError("a Record, or one in a file, has its own arrays, groups and names. Give it alone.")
     if isinstance(asked.error, (str, os.PathLike)):
+        if asked.truth_sigma is not None:
+            options["truth_sigma"] = truth_text(asked.truth_sigma)
+        options["truth_dependent"] = asked.truth_dependent
         with progress_bar(asked.progress) as bar:
             return Verdict(_core.judge_file(os.fsencode(asked.error), options, bar))
     from credence import _arrays

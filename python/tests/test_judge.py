@@ -423,3 +423,44 @@ def test_a_mean_error_is_told_from_the_spread_about_it():
     assert attribution["share"] == pytest.approx(
         np.sum(common / (there * (there - 1))) / np.sum(square / there), rel=1e-9)  # fmt: skip
     assert "a mean error alone is too large: apart from it P is right" in str(found)
+
+
+@pytest.mark.filterwarnings("ignore:error. a table")
+def test_the_truths_own_covariance_has_one_meaning_in_every_form(tmp_path, program):
+    rng = np.random.default_rng(2)
+    errors = rng.normal(size=(60, 20, 2)) + [0.5, -0.4]
+    named = {"component_names": ["x", "heading"], "component_units": ["m", "rad"], "groups": {"both": [0, 1]}}
+    plain = {"error": errors, "covariance": np.broadcast_to(np.eye(2), (60, 20, 2, 2))}
+    of = {**plain, **named}
+    R = 0.25 * np.eye(2)
+    assert credence.judge(**of).verdict == "optimistic"
+    said = credence.judge(**of, truth_sigma=0.5)
+    assert said.verdict == "undecided"
+    assert said["truth"][0]["factor95"][0] < 1 < said["truth"][0]["factor95"][1]
+    path = records.write(tmp_path / "record.h5", plain)
+    for form in (np.diag(R), R, np.broadcast_to(R, (20, 2, 2)), np.broadcast_to(R, (60, 20, 2, 2))):
+        assert credence.judge(**of, truth_covariance=form).json == said.json
+    assert credence.judge(**of, truth_sigma={"x": "500mm", "heading": 0.5}).json == said.json
+    assert credence.judge(path, truth_sigma=0.5)["truth"] == json.loads(
+        program("judge", path, "--truth-sigma=0.5", "--format=json", "--quiet")[1]
+    )[0]["truth"]
+    rows = {"error": errors.reshape(-1, 2), "covariance": plain["covariance"].reshape(-1, 2, 2)}
+    assert credence.judge(**rows, **named, runs=np.repeat(np.arange(60), 20), truth_covariance=R).json == said.json
+    for wrong, message in (
+        ({"truth_sigma": "both=0.1"}, "truth_sigma: `both=0.1` is of components in m and in rad"),
+        ({"truth_sigma": {"z": 1}}, "truth_sigma: `z=1` names no group or component"),
+        ({"truth_covariance": np.eye(3)}, r"truth_covariance: does not fit: it is \[3, 3\]"),
+        ({"truth_covariance": -R}, "truth_covariance: .* is no covariance"),
+        ({"truth_dependent": True}, "truth_dependent: says nothing"),
+    ):
+        with pytest.raises(credence.InputError, match=message):
+            credence.judge(**of, **wrong)
+
+
+def test_an_optimistic_log_has_its_turning_point():
+    errors = np.random.default_rng(3).normal(size=(2000, 2))
+    verdict = credence.judge(errors, np.broadcast_to(0.1 * np.eye(2), (2000, 2, 2)), component_units=["m", "m"])
+    (point,) = verdict.turning_points
+    assert (point["where"], point["unit"]) == ("all", "m")
+    assert point["vanishes"] < point["right"] == pytest.approx(0.9**0.5, rel=0.05)
+    assert "vanishes if the truth is off by" in str(verdict)

@@ -240,6 +240,13 @@ int parse_segments(const Parsed& parsed) {
     return static_cast<int>(steps);
 }
 
+std::map<std::string, std::string> parse_truth(const Parsed& parsed) {
+    std::map<std::string, std::string> attributes;
+    if (const auto sigma = parsed.text("truth-sigma")) attributes["truth_sigma"] = *sigma;
+    if (parsed.has("truth-dependent")) attributes["truth_dependent"] = "yes";
+    return attributes;
+}
+
 std::vector<std::string> inputs_of(const Parsed& parsed) {
     std::vector<std::string> inputs = parsed.arguments;
     for (const std::string& path : parsed.arguments) inputs.push_back(record_file(path));

@@ -73,6 +73,9 @@ double parse_failed(const Parsed& parsed);
 /// --segments: a number of steps, segments_auto or segments_off; throws InputError.
 int parse_segments(const Parsed& parsed);
 
+/// --truth-sigma and --truth-dependent, as attributes of a record.
+std::map<std::string, std::string> parse_truth(const Parsed& parsed);
+
 /// The output file of `-o`, if it is given. Before any work, refuses files that cannot be written, files that exist
 /// unless --overwrite is given, and the files that the command reads.
 std::optional<Output> check_output_option(const Parsed& parsed);

@@ -34,6 +34,10 @@ const Command& judge_command() {
         verdict_options({{"segments", "STEPS",
                           "count few long runs by segments of so many steps; off; or auto (the default): ten times the "
                           "steps over which errors decorrelate, for up to 200 runs"},
+                         {"truth-sigma", "SIGMA",
+                          "of the truth's own errors: of every component in its unit, such as 0.005, or of groups and "
+                          "components, such as position=0.005,heading=0.1deg; an upper bound"},
+                         {"truth-dependent", "", "the truth was made of data that the filter used"},
                          {"quiet", "", "no progress"}})};
     return command;
 }
@@ -51,7 +55,8 @@ Reported judged(const Parsed& parsed) {
     RunFacts facts;
     for (const std::string& path : records) {
         ProgressLine progress(parsed.has("quiet"));
-        Record record = read_record(path, [&](const Progress& now) { progress(now); }, segments);
+        Record record = read_record(path, [&](const Progress& now) { progress(now); }, segments,
+                                    parse_truth(parsed));
         progress.finish();
         if (!record.log.empty() && records.size() == 1) facts = {{"log", record.log}};
         reports.push_back(make_record_report(std::move(record), path, limits));

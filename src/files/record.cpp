@@ -74,12 +74,14 @@ std::vector<std::string> FileSource::names_in(const std::string& group) const {
 }
 
 bool FileSource::has_attribute(const std::string& name, const std::string& path) const {
+    if (path.empty() && given_.contains(name)) return true;
     const htri_t answer = H5Aexists_by_name(root_.id(), object_name(path), name.c_str(), H5P_DEFAULT);
     hdf5::check(answer, record_attribute_place(name, path), "cannot be looked up");
     return answer > 0;
 }
 
 std::string FileSource::text(const std::string& name, const std::string& path) const {
+    if (const auto given = given_.find(name); path.empty() && given != given_.end()) return given->second;
     const Handle object(H5Oopen(root_.id(), object_name(path), H5P_DEFAULT), H5Oclose,
                         record_attribute_place(name, path), "HDF5 cannot open it");
     return hdf5::read_any_text(object, name);
@@ -146,29 +148,34 @@ auto of_arm(const Handle& root, const std::string& file, const std::string& arm,
     return at_path(root, name + "/", [&](const Handle& record, const std::string&) { return use(record); });
 }
 
-/// Calls `use` with the group of a record.
+using Attributes = std::map<std::string, std::string>;
+
+/// Calls `use` with the source of a record.
 template <class Use>
-auto of_record(const std::string& path, const Use& use) {
+auto with_source(const std::string& path, const Attributes& attributes, const Use& use) {
     const auto named = parted(path);
     return hdf5::read_file(named.first,
                            "A record holds `error` [trial, step, n] and `covariance` [trial, step, n, n], may hold "
                            "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
                            "name component groups in the attribute `groups`, such as `pose 0:3, feature_1 3:5`",
-                           [&](const Handle& root) { return of_arm(root, named.first, named.second, use); });
+                           [&](const Handle& root) {
+                               return of_arm(root, named.first, named.second, [&](const Handle& group) {
+                                   return use(FileSource(group, attributes));
+                               });
+                           });
 }
 
 /// `shared`: the steps that count; none: all.
 Record read_steps(const std::string& path, const std::function<void(const Progress&)>& progress, int segments,
-                  const SharedSteps* shared) {
-    const ReopenRecord reopen = [path](const auto& use) {
-        of_record(path, [&](const Handle& group) { return use(RecordReader(FileSource(group))), true; });
+                  const Attributes& attributes, const SharedSteps* shared) {
+    const OpenAgain again = [path, attributes](const std::function<void(RecordReader)>& use) {
+        with_source(path, attributes, [&](const FileSource& source) { return use(RecordReader(source)), true; });
     };
-    Record read = of_record(path, [&](const Handle& group) {
-        const FileSource source(group);
+    Record read = with_source(path, attributes, [&](const FileSource& source) {
         RecordReader reader(source);
         if (shared != nullptr)
             reader.compare([shared](std::int64_t trial, int step) { return shared->have(trial, step); });
-        Record record = read_reopenable(std::move(reader), path, progress, segments, reopen);
+        Record record = read_record(std::move(reader), path, progress, segments, again);
         if (source.has_attribute("log", "")) record.log = source.text("log", "");
         return record;
     });
@@ -178,8 +185,9 @@ Record read_steps(const std::string& path, const std::function<void(const Progre
 
 }  // namespace
 
-Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress, int segments) {
-    return read_steps(path, progress, segments, nullptr);
+Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress, int segments,
+                   const Attributes& attributes) {
+    return read_steps(path, progress, segments, attributes, nullptr);
 }
 
 std::string record_file(const std::string& path) { return parted(path).first; }
@@ -191,24 +199,18 @@ std::vector<std::string> records_in(const std::string& path) {
 }
 
 void require_same_runs(const std::string& first, const std::string& path) {
-    of_record(first, [&](const Handle& one) {
-        return of_record(path, [&](const Handle& other) {
-            require_same_runs(FileSource(one), FileSource(other));
-            return true;
-        });
+    with_source(first, {}, [&](const FileSource& one) {
+        return with_source(path, {}, [&](const FileSource& other) { return require_same_runs(one, other), true; });
     });
 }
 
 std::vector<Record> read_same_runs(const std::vector<std::string>& paths, SharedSteps& shared) {
     for (const std::string& path : paths) {
         if (path != paths.front()) require_same_runs(paths.front(), path);
-        of_record(path, [&](const Handle& group) {
-            shared.add(RecordReader(FileSource(group)));
-            return true;
-        });
+        with_source(path, {}, [&](const FileSource& source) { return shared.add(RecordReader(source)), true; });
     }
     std::vector<Record> records;
-    for (const std::string& path : paths) records.push_back(read_steps(path, {}, segments_off, &shared));
+    for (const std::string& path : paths) records.push_back(read_steps(path, {}, segments_off, {}, &shared));
     return records;
 }
 

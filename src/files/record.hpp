@@ -7,6 +7,7 @@
 
 #include <credence/record.hpp>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +17,9 @@ namespace credence {
 /// A record in a file, as long as its root is open.
 class FileSource : public RecordSource {
 public:
-    explicit FileSource(const hdf5::Handle& root) : root_(root) {}
+    /// The attributes `given` take the place of those of the root.
+    explicit FileSource(const hdf5::Handle& root, std::map<std::string, std::string> given = {})
+        : root_(root), given_(std::move(given)) {}
     bool has(const std::string& path) const override;
     DatasetPointer open(const std::string& path, Numbers numbers) const override;
     std::vector<std::string> names_in(const std::string& group) const override;
@@ -27,6 +30,7 @@ public:
 
 private:
     const hdf5::Handle& root_;
+    std::map<std::string, std::string> given_;
 };
 
 /// The records of a file, by the paths that `read_record` takes: its own, or FILE:ARM for each group that the root's

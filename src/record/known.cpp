@@ -133,6 +133,7 @@ RemainingState::RemainingState(const std::vector<char>& left_out, RecordLayout& 
 void RemainingState::keep(const RecordShape& shape, RecordValues& values) const {
     keep_rows(values.error, size_, kept_, false);
     keep_rows(values.covariance, size_, kept_, !shape.has_variances);
+    keep_rows(values.truth_covariance, size_, kept_, true);
     for (std::size_t b = 0; b < values.own.size(); ++b)
         if (shape.source(b) == GroupSource::own) keep_rows(values.own[b], group_size_[b], in_group_[b], true);
 }

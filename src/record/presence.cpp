@@ -53,6 +53,7 @@ std::string PresenceChecker::read(const RecordStep& step, CheckedStep& checked) 
         if (shape_.source(b) == GroupSource::own) wrong = read_own(step, b, checked);
         if (shape_.source(b) == GroupSource::nees) wrong = read_nees(step, b, checked);
     }
+    if (wrong.empty() && step.truth_covariance != nullptr) use_truth(step, checked);
     return wrong.empty() && shape_.has_innovations() ? read_innovation(step, shape_, checked) : wrong;
 }
 
@@ -132,6 +133,32 @@ std::string PresenceChecker::read_variances(const RecordStep& step, CheckedStep&
         if (here) checked.variances(j) = step.covariance[j];
     }
     return checked.variances.allFinite() ? "" : "a variance is not finite";
+}
+
+/// Adds the covariance of the truth's errors to those of the filter, or subtracts it.
+void PresenceChecker::use_truth(const RecordStep& step, CheckedStep& checked) {
+    constexpr double rounding = 1e-6;
+    const std::string name = "truth_covariance";
+    bool fits = read_symmetric(name, step, step.truth_covariance, shape_.n, here_, rounding / 16, part_);
+    if (shape_.truth == TruthUse::beside && fits && !part_.isZero(0)) {
+        Eigen::MatrixXd padded = part_;
+        padded.diagonal() = (1 + rounding) * part_.diagonal().array() +
+                            rounding * rounding * part_.diagonal().cwiseAbs().maxCoeff();
+        fits = CholeskyFactor(padded).succeeded();
+    }
+    if (!fits)
+        throw RecordError(record_place(name),
+                          "trial " + std::to_string(step.trial) + ", step " + std::to_string(step.step) +
+                              " (both counted from 0) is no covariance: it is not finite, or has a negative eigenvalue",
+                          "Write that of the truth's errors in the chart and units of `error`, 0 where it is exact");
+    checked.R.setZero(shape_.n, shape_.n);
+    checked.R(here_, here_) = part_;
+    if (shape_.truth == TruthUse::beside) return;
+    const double sign = shape_.truth == TruthUse::added ? 1 : -1;
+    if (checked.P.size() > 0) checked.P += sign * checked.R;
+    if (shape_.has_variances) checked.variances += sign * checked.R.diagonal();
+    for (std::size_t b = 0; b < checked.own.size(); ++b)
+        if (checked.own[b].size() > 0) checked.own[b] += sign * checked.R(members_[b], members_[b]);
 }
 
 std::string PresenceChecker::read_own(const RecordStep& step, std::size_t b, CheckedStep& checked) {

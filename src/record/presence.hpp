@@ -26,6 +26,7 @@ private:
     std::string read_errors(const RecordStep& step, CheckedStep& checked);
     std::string follow(std::vector<Stay>& stays, std::size_t at, bool here, const std::string& what) const;
     std::string read_covariance(const RecordStep& step, CheckedStep& checked);
+    void use_truth(const RecordStep& step, CheckedStep& checked);
     std::string read_variances(const RecordStep& step, CheckedStep& checked);
     std::string read_own(const RecordStep& step, std::size_t b, CheckedStep& checked);
     std::string read_nees(const RecordStep& step, std::size_t b, CheckedStep& checked);

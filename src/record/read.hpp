@@ -21,11 +21,18 @@ void each_step(const RecordReader& reader, const std::function<void(const Record
 /// Throws InputError where `read_record` would, and reads no more than this needs.
 void check_record(const RecordArrays& arrays);
 
-/// Opens a record once more and calls this with its reader.
-using ReopenRecord = std::function<void(const std::function<void(RecordReader)>&)>;
+/// Opens a record once more, and uses its reader.
+using OpenAgain = std::function<void(const std::function<void(RecordReader)>& use)>;
 
-/// Reads the record in its own chart. `name` names the scenario. Throws PlacedError.
-Record read_reopenable(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,
-                            const ReopenRecord& reopen);
+/// Reads the record, and what lets its verdict read it again. `name` names the scenario. Throws PlacedError.
+Record read_record(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,
+                   const OpenAgain& open_again);
+
+/// The evidence with the covariance of the truth's errors, beside a record that was read without it.
+std::shared_ptr<const TruthEvidence> truth_evidence(RecordReader& reader, const std::string& name, int segments);
+
+/// Record::truth_sigmas
+std::vector<double> truth_sigmas(const RecordReader& reader, const std::vector<int>& components,
+                                 const std::vector<double>& nees);
 
 }  // namespace credence

@@ -22,6 +22,7 @@ void for_each_step(const RecordPart& part, const RecordValues& values,
         for (step.step = part.first_step; step.step < part.first_step + part.steps; ++step.step, ++i) {
             step.error = at(values.error);
             step.covariance = at(values.covariance);
+            step.truth_covariance = at(values.truth_covariance);
             step.innovation = at(values.innovation);
             step.innovation_covariance = at(values.innovation_covariance);
             for (std::size_t b = 0; b < step.own.size(); ++b) step.own[b] = at(values.own[b]);
@@ -33,7 +34,8 @@ RecordReader::RecordReader(const RecordSource& source, std::int64_t part_numbers
     : layout_(open_record(source)), part_numbers_(part_numbers) {
     const RecordDatasets& data = layout_.data;
     for (const DatasetPointer* dataset :
-         {&data.error, &data.truth, &data.estimate, &data.covariance, &data.innovation, &data.innovation_covariance})
+         {&data.error, &data.truth, &data.estimate, &data.covariance, &data.truth_covariance, &data.innovation,
+          &data.innovation_covariance})
         add_size(*dataset);
     for (const DatasetPointer& dataset : data.own) add_size(dataset);
     if (layout_.shape.declared.empty()) layout_.shape.longest = longest_trial();
@@ -143,7 +145,18 @@ void RecordReader::read(const RecordPart& part, RecordValues& values) const {
     read_covariances(part, values);
     if (data.innovation) read(*data.innovation, part, values.innovation);
     if (data.innovation) read(*data.innovation_covariance, part, values.innovation_covariance);
+    if (data.truth_covariance) read(*data.truth_covariance, part, values.truth_covariance);
     if (remaining_) remaining_->keep(layout_.shape, values);
+    const std::size_t row = means_.size() / static_cast<std::size_t>(layout_.shape.steps),
+                      length = row * static_cast<std::size_t>(part.steps),
+                      first = row * static_cast<std::size_t>(part.first_step);
+    for (std::size_t i = 0; length > 0 && i < values.error.size(); ++i)
+        values.error[i] = factors_[first + i % length] * (values.error[i] - means_[first + i % length]);
+}
+
+void RecordReader::centre(std::vector<double> means, std::vector<double> factors) {
+    means_ = std::move(means);
+    factors_ = std::move(factors);
 }
 
 void RecordReader::read_errors(const RecordPart& part, RecordValues& values) const {

@@ -27,6 +27,7 @@ struct RecordValues {
     std::vector<double> innovation_covariance;  ///< [trials, steps, m, m]
     std::vector<std::vector<double>> own;       ///< [groups] [trials, steps, d, d] covariances, or [trials, steps] NEES
     std::vector<double> truth, estimate;        ///< [trials, steps, q]
+    std::vector<double> truth_covariance;       ///< [trials, steps, n, n]
 };
 
 /// The values of a part's step, one step after the other.
@@ -44,6 +45,11 @@ public:
     void compare(std::function<bool(std::int64_t trial, int step)> steps) { layout_.shape.compared = std::move(steps); }
     /// Of truth and estimate, where they lie on a manifold.
     std::optional<Manifold>& manifold() { return layout_.data.manifold; }
+
+    /// What is done with the covariance of the truth's errors.
+    void use_truth(TruthUse use) { layout_.shape.truth = use; }
+    /// What is subtracted from the errors [steps, n], and a factor on what is left [steps, n].
+    void centre(std::vector<double> means, std::vector<double> factors);
 
     /// The part that starts at a trial and step, as large as allowed, but at least one step.
     RecordPart part_at(std::int64_t trial, int step) const;
@@ -67,6 +73,7 @@ private:
     std::int64_t part_numbers_;
     std::int64_t step_numbers_ = 0;  ///< numbers of one step of a trial
     std::optional<RemainingState> remaining_;  ///< where components are known exactly
+    std::vector<double> means_, factors_;      ///< [steps, n] of the errors that are left; empty: as they are
 };
 
 }  // namespace credence

@@ -49,31 +49,39 @@ Record read_record(const RecordReader& reader, const std::string& name, const Re
     return read_record(reader, name, progress, segments, DivergedTrials::set_aside, Copies::fail);
 }
 
-Record read_reopenable(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,
-                            const ReopenRecord& reopen) {
+Record read_record(RecordReader reader, const std::string& name, const ReportProgress& progress, int segments,
+                   const OpenAgain& open_again) {
+    Record record = read_record(reader, name, progress, segments);
     const std::optional<Manifold>& manifold = reader.manifold();
     const int charts = manifold ? manifold->charts() : 1;
-    Record record = read_record(reader, name, progress, segments);
     if (charts > 1) record.chart = manifold->chart();
     for (int other = 1; other < charts; ++other)
-        record.in_other_charts.push_back([reopen, name, segments, other] {
-            Record again;
-            reopen([&](RecordReader one) {
-                one.manifold()->take_chart(other);
-                again = read_record(one, name, {}, segments);
-                again.chart = one.manifold()->chart();
+        record.in_other_charts.push_back([=] {
+            Record read;
+            open_again([&](RecordReader again) {
+                again.manifold()->take_chart(other);
+                read = read_record(again, name, {}, segments);
+                read.chart = again.manifold()->chart();
             });
-            return again;
+            return read;
         });
     std::vector<char> counted;
     const ArmResults& arm = record.results.arms.front();
     for (const double status : arm.columns.in_memory()[status_column(record.results.columns)])
         counted.push_back(counts(static_cast<Status>(static_cast<int>(status))));
     if (std::ranges::count(counted, 1) >= least_segments && has_step_means(reader.shape()))
-        record.about_means = [reopen, name, counted] {
+        record.about_means = [=] {
             AboutMeans about;
-            reopen([&](const RecordReader& one) { about = read_about_means(one, name, counted); });
+            open_again([&](const RecordReader& again) { about = read_about_means(again, name, counted); });
             return about;
+        };
+    if (reader.shape().has_truth_covariance)
+        record.truth = truth_evidence(reader, name, segments);
+    else if (reader.shape().has_joint() || reader.shape().has_variances)
+        record.truth_sigmas = [=](const std::vector<int>& components, const std::vector<double>& nees) {
+            std::vector<double> sigmas;
+            open_again([&](RecordReader again) { sigmas = truth_sigmas(again, components, nees); });
+            return sigmas;
         };
     return record;
 }
@@ -97,9 +105,10 @@ auto with_reader(const RecordArrays& arrays, const Use& use) {
 }  // namespace
 
 Record read_record(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress, int segments) {
-    const ReopenRecord reopen = [&arrays](const auto& use) { with_reader(arrays, use); };
     return with_reader(arrays, [&](RecordReader reader) {
-        return read_reopenable(std::move(reader), name, progress, segments, reopen);
+        return read_record(std::move(reader), name, progress, segments, [&arrays](const auto& use) {
+            with_reader(arrays, [&](RecordReader again) { use(std::move(again)); });
+        });
     });
 }
 

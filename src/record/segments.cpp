@@ -196,6 +196,8 @@ Evidence evidence_of(const Record& record) {
     Evidence evidence = evidence_of(record.results, record.results.arms.front());
     evidence.segments = record.segments.found;
     evidence.of_innovations = record.of_innovations;
+    evidence.truth = record.truth;
+    if (evidence.truth) evidence.diverged = evidence.truth->added.diverged;
     const auto of = [](const ScenarioResults& results) { return evidence_of(results, results.arms.front()); };
     std::optional<Evidence> centred;
     if (record.segments.centred) centred = of(*record.segments.centred);

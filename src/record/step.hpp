@@ -31,6 +31,9 @@ struct RowGroup {
     std::vector<int> rows;
 };
 
+/// What is done with the covariance R of the truth's own errors: nothing beside P, or P + R or P - R in place of P.
+enum class TruthUse { beside, added, subtracted };
+
 /// What a record holds.
 struct RecordShape {
     std::int64_t trials = 0;
@@ -59,6 +62,9 @@ struct RecordShape {
     bool has_errors = true;              ///< false: NEES alone
     bool of_innovations = false;         ///< the errors are innovations
     bool has_variances = false;          ///< the covariance is [trial, step, n]
+    bool has_truth_covariance = false;
+    bool truth_depends = false;          ///< on the filter's own data
+    TruthUse truth = TruthUse::beside;
 
     GroupSource source(std::size_t group) const { return sources.empty() ? GroupSource::joint : sources[group]; }
     bool has_joint() const { return source(0) == GroupSource::joint; }
@@ -80,6 +86,7 @@ struct RecordStep {
     int step = 0;
     const double* error = nullptr;                  ///< [n]
     const double* covariance = nullptr;             ///< [n, n]
+    const double* truth_covariance = nullptr;       ///< [n, n]; null without
     const double* innovation = nullptr;             ///< [m]; null without innovations, and so is the next
     const double* innovation_covariance = nullptr;  ///< [m, m]
     std::vector<const double*> own{};               ///< [groups] covariance [d, d] or NEES of a group; else null
@@ -97,6 +104,7 @@ struct CheckedStep {
     Eigen::VectorXd e;
     Eigen::MatrixXd P;       ///< symmetric; empty where the record has no joint covariance
     Eigen::VectorXd variances;  ///< [n] where the record has these alone
+    Eigen::MatrixXd R;       ///< of the truth's own errors, already in P as RecordShape::truth says; empty without
     std::vector<int> rows;   ///< observed rows of the innovation
     Eigen::VectorXd nu;      ///< [rows]
     Eigen::MatrixXd S;       ///< [rows, rows], symmetric

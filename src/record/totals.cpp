@@ -211,7 +211,8 @@ void RecordTotals::add_columns(std::int64_t trial) {
             row[RecordColumn::pose_error] = over_steps(all_series_.squared_error + pose_group(shape_));
         }
         row[RecordColumn::nees_ratio] = over_steps(0) / count(0) / shape_.n;
-        if (row[RecordColumn::nees_ratio] > diverged_nees_ratio &&
+        const bool by_P_alone = shape_.has_truth_covariance && shape_.truth != TruthUse::added;
+        if (!by_P_alone && row[RecordColumn::nees_ratio] > diverged_nees_ratio &&
             std::ssize(present_) * shape_.n >= least_diverged_numbers)
             note_diverged(trial, row[RecordColumn::nees_ratio]);
         row[RecordColumn::nis_ratio] =

@@ -5,6 +5,7 @@
 #include <credence/error.hpp>
 #include <credence/report.hpp>
 #include <credence/text.hpp>
+#include <map>
 
 #include "record/results.hpp"
 #include "report/format.hpp"
@@ -89,10 +90,42 @@ bool is_too_large(const Finding& finding) {
 /// Whether a mean error or the spread about it is what is too large.
 void attribute_errors(const Record& record, ArmReport& arm) {
     const auto speaks = [](const Finding& one) { return one.what == Fault::optimistic || one.what == Fault::biased; };
-    if (!record.about_means || !std::ranges::any_of(arm.consistency.findings, speaks)) return;
+    if (!record.about_means || arm.evidence.truth || !std::ranges::any_of(arm.consistency.findings, speaks)) return;
     const AboutMeans about = record.about_means();
     arm.consistency.attribution = attribute(arm.evidence, arm.consistency,
                                             evidence_of(about.results, about.results.arms.front()), about.share);
+}
+
+/// Of a log, by unit, the largest group or else a component whose NEES is too large; one without a unit is by itself.
+void find_turning_points(const Record& record, const Evidence& evidence, Consistency& verdict) {
+    std::map<std::string, std::pair<std::vector<int>, const Finding*>> largest;
+    const auto unit_of = [&](int j) { return evidence.bias[static_cast<std::size_t>(j)].unit; };
+    for (const Finding& finding : verdict.findings) {
+        if (finding.about != Subject::size || finding.what != Fault::optimistic) continue;
+        std::vector<int> members;
+        for (const GroupEvidence& group : evidence.groups)
+            if (group.name == finding.where) members = group.components;
+        for (int j = 0; members.empty() && j < std::ssize(evidence.bias); ++j)
+            if (evidence.bias[static_cast<std::size_t>(j)].component == finding.where) members = {j};
+        const std::string unit = unit_of(members.front());
+        const auto of_another = [&](int j) { return unit.empty() ? j != members.front() : unit_of(j) != unit; };
+        if (std::ranges::any_of(members, of_another)) continue;
+        auto& most = largest[unit.empty() ? finding.where : unit];
+        if (members.size() > most.first.size()) most = {members, &finding};
+    }
+    const SegmentEvidence& segments = evidence.segments;
+    for (const auto& [key, one] : largest) {
+        const auto& [members, finding] = one;
+        // Of segments that do not count the bound is that on errors about their mean [verdict/segments.cpp].
+        const double above = segments.count || segments.run.empty()
+                                 ? finding->value / finding->interval.low
+                                 : bounds_at_any_correlation(static_cast<double>(segments.run.size()),
+                                                             static_cast<int>(members.size()), levels::run / 2)
+                                       .high;
+        const std::vector<double> sigmas = record.truth_sigmas(members, {(1 + verdict.limits.margin) * above, 1});
+        if (sigmas.front() > 0)
+            verdict.turning_points.push_back({finding->where, unit_of(members.front()), sigmas.front(), sigmas.back()});
+    }
 }
 
 /// Gives the means of the whole record the intervals of its segments.
@@ -184,6 +217,8 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     attribute_errors(record, arm);
     name_absent_groups(arm.evidence, limits, report.not_judged);
     try_other_charts(record, arm);
+    if (record.truth_sigmas && (arm.evidence.of_few_runs() || arm.evidence.trials == 1))
+        find_turning_points(record, arm.evidence, arm.consistency);
     show_finite_trials(arm.evidence, limits);
     return report;
 }

@@ -84,6 +84,7 @@ ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, Evid
     ArmReport report{results.scenario.name, arm.name, results.trials, 0, 0, {}, std::move(evidence), {}};
     report.consistency = judge(report.evidence, limits);
     report.evidence.moments.reset();  // large, and of no further use
+    report.evidence.truth.reset();
     leave_out_rounded(report.evidence, limits);
     report.failed = report.evidence.left_out;
     report.diverged = report.evidence.diverged;

@@ -222,6 +222,24 @@ std::string trials_text(const Report& report) {
            std::to_string(*report.root_seed);
 }
 
+namespace {
+
+/// What the errors over P may be, given those of the truth, and how accurate a truth would decide.
+void add_truth(const Consistency& verdict, std::vector<Reason>& reasons) {
+    if (verdict.truth.empty()) return;
+    constexpr std::size_t most = 4;
+    std::vector<std::string> parts;
+    for (const TruthFactor& one : verdict.truth)
+        if (parts.size() < most)
+            parts.push_back(one.group + " " + ratio_text(one.factor.low) + " to " + ratio_text(one.factor.high));
+    reasons.push_back({"mean squared error over P's, given the truth's own (95 %):", parts});
+    const double deciding = std::ranges::min_element(verdict.truth, {}, &TruthFactor::deciding_sigma)->deciding_sigma;
+    if (verdict.verdict == Verdict::undecided && deciding < 1)
+        reasons.push_back({"a truth with " + ratio_text(deciding) + " times this sigma would decide", {}});
+}
+
+}  // namespace
+
 std::vector<Reason> reasons_of(const ArmReport& arm) {
     if (arm.not_run()) return {};
     const Consistency& verdict = arm.consistency;
@@ -242,6 +260,12 @@ std::vector<Reason> reasons_of(const ArmReport& arm) {
         reasons.push_back({"note, innovations: their correlation could not be computed", {}});
     if (verdict.attribution) reasons.push_back({sentence(*verdict.attribution), {}});
     for (const std::string& hint : verdict.hints) reasons.push_back({"hint: " + hint, {}});
+    add_truth(verdict, reasons);
+    for (const TurningPoint& one : verdict.turning_points)
+        reasons.push_back({"what is too large in " + one.where + " vanishes if the truth is off by " +
+                               formatted("%.2g ", one.vanishes) + one.unit + (one.unit.empty() ? "" : " ") +
+                               "(sigma of each axis); P would be right at " + formatted("%.2g ", one.right) + one.unit,
+                           {}});
     const double share_of_ten = 10 / static_cast<double>(arm.evidence.trials);
     if (const WorstTrials& worst = arm.evidence.worst; worst.share > std::max(0.2, 2 * share_of_ten)) {
         std::vector<std::string> parts;

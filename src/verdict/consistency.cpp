@@ -88,7 +88,8 @@ Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
     return judgement.consistency(evidence);
 }
 
-/// The verdict on the trials that did not fail.
+}  // namespace
+
 Consistency judge_survivors(const Evidence& evidence, const Limits& limits) {
     if (evidence.trials == 1 && !evidence.segments.count) {
         Consistency verdict = judge_single_run(evidence, limits);
@@ -103,8 +104,6 @@ Consistency judge_survivors(const Evidence& evidence, const Limits& limits) {
     add_hints(evidence, verdict);
     return verdict;
 }
-
-}  // namespace
 
 void Judgement::add(Side side, Finding finding) {
     (side == Side::above ? above_ : below_) = true;
@@ -212,7 +211,7 @@ bool too_many_failed(std::int64_t failed, std::int64_t trials, double share) {
 }
 
 Consistency judge(const Evidence& evidence, const Limits& limits) {
-    Consistency verdict = judge_survivors(evidence, limits);
+    Consistency verdict = evidence.truth ? judge_with_truth(evidence, limits) : judge_survivors(evidence, limits);
     if (too_many_failed(evidence.failed_trials(), evidence.all_trials, limits.failed)) {
         verdict.verdict = Verdict::failed;
         verdict.reasons.clear();

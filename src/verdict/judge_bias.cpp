@@ -25,6 +25,10 @@ void judge_suspicion(const BiasEvidence& bias, int components, Judgement& judgem
             {Subject::bias, Fault::biased, bias.component, looks->value, "mean error/sigma", looks->trials});
 }
 
+double nearest_to_0(const BiasClaim& claim) {
+    return std::min(std::abs(claim.interval.low), std::abs(claim.interval.high));
+}
+
 /// Of runs too few to tell them from what was drawn once: an offset or a drift is a note, and a mean that is beyond one
 /// draw of each run a finding.
 void judge_offset(const BiasEvidence& bias, const BiasClaim& claim, const Evidence& evidence, Judgement& judgement) {
@@ -39,8 +43,8 @@ void judge_offset(const BiasEvidence& bias, const BiasClaim& claim, const Eviden
                         "drift/sigma"});
     if (!claim.finding) return;
     constexpr double one_draw = 3.2;
-    const double nearest = std::min(std::abs(claim.interval.low), std::abs(claim.interval.high));
-    if (nearest > one_draw / std::sqrt(static_cast<double>(evidence.trials)))
+    if (nearest_to_0(claim) >
+        one_draw / std::sqrt(static_cast<double>(evidence.trials)) + truth_allowance(bias.truth, evidence))
         judgement.add_bias({Subject::bias, Fault::biased, bias.component, worst_step(bias), claim.value, claim.interval,
                             "mean error/sigma"});
     else
@@ -50,12 +54,18 @@ void judge_offset(const BiasEvidence& bias, const BiasClaim& claim, const Eviden
 
 }  // namespace
 
+double truth_allowance(double share, const Evidence& evidence) {
+    return share > 0 ? share * normal_quantile(levels::bias / static_cast<double>(evidence.bias.size())) : 0;
+}
+
 void judge_bias(const Evidence& evidence, Judgement& judgement) {
     for (const BiasEvidence& bias : evidence.bias) {
         // A record that does not give this component's sigma.
         if (!(bias.run.count > 0) && evidence.trials > 0) continue;
-        const BiasClaim claim = claim_on_bias(bias.run, bias.largest_error, static_cast<int>(evidence.bias.size()),
-                                              judgement.limits().bias);
+        BiasClaim claim = claim_on_bias(bias.run, bias.largest_error, static_cast<int>(evidence.bias.size()),
+                                        judgement.limits().bias);
+        claim.finding = claim.finding &&
+                        nearest_to_0(claim) > judgement.limits().bias + truth_allowance(bias.truth, evidence);
         if (evidence.has_offsets())
             judge_offset(bias, claim, evidence, judgement);
         else if (claim.finding)

@@ -62,10 +62,11 @@ void judge_windows(const Evidence& evidence, Judgement& judgement) {
         if (beyond) groups.push_back(group.name);
     }
     withhold("NEES/dim of ", groups, judgement);
-    const double level = levels::bias / (windows * static_cast<double>(std::max<std::size_t>(1, evidence.bias.size()))),
-                 margin = margins_of_part * judgement.limits().bias;
+    const double level = levels::bias / (windows * static_cast<double>(std::max<std::size_t>(1, evidence.bias.size())));
     for (const BiasEvidence& bias : evidence.bias) {
         if (!(bias.run.count > 1)) continue;
+        const double margin =
+            margins_of_part * judgement.limits().bias + truth_allowance(bias.largest_truth, evidence);
         std::vector<int> found;
         bool beyond = false;
         Moments worst;

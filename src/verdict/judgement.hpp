@@ -126,6 +126,14 @@ void judge_segments(const Evidence& evidence, Judgement& judgement);
 /// Few runs whose segments are too few to count: finds what is wrong whatever the spread of their NEES.
 void judge_few_runs(const Evidence& evidence, Judgement& judgement);
 
+/// The verdict on the trials that did not fail, by P alone.
+Consistency judge_survivors(const Evidence& evidence, const Limits& limits);
+/// The same with the covariance of the truth's own errors, `evidence.truth`.
+Consistency judge_with_truth(const Evidence& evidence, const Limits& limits);
+
+/// How far a truth that is off by a draw of its own, once, may move a mean error, in sigmas of P + R; 0 without R.
+double truth_allowance(double share, const Evidence& evidence);
+
 /// How many trials would do [docs/theory/statistics.md, Advice], to two digits; 0 below 30 trials.
 TrialsNeeded trials_needed(const Evidence& evidence, const Limits& limits);
 

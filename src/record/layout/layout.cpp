@@ -107,6 +107,7 @@ RecordLayout open_record(const RecordSource& source) {
     const bool of_innovations = has_innovations_alone(source);
     RecordLayout layout = open_datasets(of_innovations ? *innovations_of(source) : source);
     layout.shape.of_innovations = of_innovations;
+    add_truth_covariance(source, layout);
     add_columns(source, layout.shape);
     require_room(layout.shape);
     return layout;

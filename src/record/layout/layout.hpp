@@ -15,6 +15,7 @@ struct RecordDatasets {
     DatasetPointer error;                         ///< [n]
     DatasetPointer truth, estimate;               ///< [q] in place of the error
     DatasetPointer covariance;                    ///< [n, n], or [n] variances
+    DatasetPointer truth_covariance;              ///< [n, n]
     DatasetPointer innovation;                    ///< [m]
     DatasetPointer innovation_covariance;         ///< [m, m]
     std::vector<DatasetPointer> own;              ///< [groups] covariance [d, d], or NEES []

@@ -23,6 +23,10 @@ void check_time(const RecordSource& source, RecordLayout& layout);
 /// The columns of the record's own, datasets /column/NAME [trial], and the name of its arm, the attribute `arm`.
 void add_columns(const RecordSource& source, RecordShape& shape);
 
+/// The covariance of the truth's own errors: the attribute `truth_sigma`, or the dataset `truth_covariance`, and the
+/// attribute `truth_dependent`.
+void add_truth_covariance(const RecordSource& source, RecordLayout& layout);
+
 /// Gives every group the same source; none has a dataset of its own yet.
 void set_sources(GroupSource source, RecordLayout& layout);
 /// Opens a NEES as that of a group, and returns the attribute `dimension`.

@@ -108,6 +108,24 @@ Json directions_json(const DirectionsFound& directions) {
             {"smallest", list(directions.smallest)}};
 }
 
+Json truth_json(const Consistency& verdict) {
+    Json json = Json::array();
+    for (const TruthFactor& one : verdict.truth)
+        json.push_back({{"group", one.group},
+                        {"nees_ratio", one.nees},
+                        {"ci95", interval_json(one.nees95)},
+                        {"factor95", interval_json(one.factor)},
+                        {"deciding_sigma", one.deciding_sigma}});
+    return json;
+}
+
+Json turning_points_json(const Consistency& verdict) {
+    Json json = Json::array();
+    for (const TurningPoint& one : verdict.turning_points)
+        json.push_back({{"where", one.where}, {"unit", one.unit}, {"vanishes", one.vanishes}, {"right", one.right}});
+    return json;
+}
+
 Json arm_json(const Report& report, const ArmReport& arm) {
     Json head{{"scenario", arm.scenario},
               {"arm", arm.arm},
@@ -158,6 +176,8 @@ Json arm_json(const Report& report, const ArmReport& arm) {
         json["worst_trials"]["trials"].push_back(
             {{"trial", one.trial}, {"nees_ratio", one.nees_ratio}, {"step", one.step}});
     json["suspicions"] = suspicions_json(arm.consistency.suspicions);
+    if (!arm.consistency.truth.empty()) json["truth"] = truth_json(arm.consistency);
+    if (!arm.consistency.turning_points.empty()) json["turning_points"] = turning_points_json(arm.consistency);
     json["findings"] = findings_json(arm.consistency.findings);
     json["cautions"] = findings_json(arm.consistency.cautions);
     json.update(evidence_json(arm.evidence));
@@ -228,6 +248,15 @@ public:
             add_direction("direction_smallest:", one);
         for (const DirectionOfGroup& one : arm_.consistency.directions.largest)
             add("direction_level:" + one.group, one.level, nan, none);
+        for (const TruthFactor& one : arm_.consistency.truth) {
+            add("nees_with_truth:" + one.group, one.nees, nan, one.nees95);
+            add("error_over_P:" + one.group, nan, nan, one.factor);
+            add("deciding_sigma:" + one.group, one.deciding_sigma, nan, none);
+        }
+        for (const TurningPoint& one : arm_.consistency.turning_points) {
+            add("turning_point:" + one.where, one.vanishes, nan, none);
+            add("turning_point_right:" + one.where, one.right, nan, none);
+        }
         add_steps("direction_spectrum", arm_.consistency.directions.spectrum, {});
         if (const std::optional<Attribution>& found = arm_.consistency.attribution) {
             add("attribution_share:" + carrier_name(found->carrier), found->share, nan, none);

@@ -91,6 +91,27 @@ Html reached_table(const ArmReport& arm) {
     return html_of(table);
 }
 
+/// What the truth's own errors leave open, or how large they would have to be.
+Html truth_tables(const ArmReport& arm) {
+    Html tables;
+    if (!arm.consistency.truth.empty()) {
+        Table table(arm.scenario + ", " + arm.arm + ": with the covariance R of the truth's own errors, 95 %",
+                    {"group", "NEES/dim by P + R", "", "squared error over P's", "sigma of a truth that would decide"});
+        for (const TruthFactor& one : arm.consistency.truth)
+            table.row(one.group, {short_cell(one.nees), range_cell(one.nees95), range_cell(one.factor),
+                                  short_cell(one.deciding_sigma)});
+        tables += html_of(table);
+    }
+    if (!arm.consistency.turning_points.empty()) {
+        Table table(arm.scenario + ", " + arm.arm + ": sigma of a truth with which P is not found too small",
+                    {"of", "no finding from", "P is right at", "unit"});
+        for (const TurningPoint& one : arm.consistency.turning_points)
+            table.row(one.where, {short_cell(one.vanishes), short_cell(one.right), one.unit});
+        tables += html_of(table);
+    }
+    return tables;
+}
+
 Html arm_findings(const ArmReport& arm) {
     constexpr std::size_t most = 8;
     const Consistency& verdict = arm.consistency;
@@ -107,7 +128,8 @@ Html arm_findings(const ArmReport& arm) {
                 ? table
                 : folded("All " + std::to_string(all.size()) + " findings of " + arm.arm + " with their intervals",
                          table)) +
-           (arm.consistency.suspicions.empty() ? Html() : html_of(suspicions_table(arm))) + reached_table(arm);
+           (arm.consistency.suspicions.empty() ? Html() : html_of(suspicions_table(arm))) + reached_table(arm) +
+           truth_tables(arm);
 }
 
 }  // namespace
