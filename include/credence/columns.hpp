@@ -9,7 +9,7 @@
 
 namespace credence {
 
-/// How a trial ended. Only the last two have no columns; only the first one is in the series.
+/// How a trial ended. Only the last two have no columns; the verdict is on those of the first one.
 enum class Status : std::int8_t {
     completed = 0,
     diverged = 1,  ///< its NEES/n is beyond `diverged_nees_ratio`

@@ -142,8 +142,8 @@ struct Record {
 /// 2^-52, or that of the type in the file where it is coarser. A trial has also failed, as `non_finite`, if at some
 /// step only the error or only the covariance is NaN or some value is not finite, if its series exceed 1e140, if it has
 /// no steps, or if it ends before its declared steps or, where none are declared, before the longest trial. Failed
-/// trials are left out of the series. So diverged ones, unless more than half of those that did not fail diverged: then
-/// these are in the series as the others. All are listed as troubles.
+/// trials are left out of the totals. Those of diverged ones are apart, unless more than half of those that did not
+/// fail diverged: then these count as the others. All are listed as troubles.
 ///
 /// Components whose errors and whose rows and columns of every covariance are 0 at all steps are not in the state: they
 /// are left out, and `results.not_judged` names them.

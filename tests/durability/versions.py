@@ -19,12 +19,11 @@ OWN = 10  # version of this program's journals
 SCHEMA = 5
 MORE = 600  # trials: three blocks
 LATER = ((2, 0), (-2, 0), (0, 1), (0, -1), (2, 1))  # a journal's version and its schema's, over this program's
-RELEASE = "0.3"  # journals and results files of it are resumed
-BEFORE = "0.2"  # those of it are refused
+RELEASE = "0.3"  # journals and results files of it are resumed, if their schema is this program's
+BEFORE = "0.3"  # those of it with schema 4 are refused
 FINISH = "Finish the run with the release that began it."
-AGAIN = (f"/@schema_version: is 3, this program's is {SCHEMA}; the file was made by release 0.2.0. Report it with that "
+AGAIN = (f"/@schema_version: is 4, this program's is {SCHEMA}; the file was made by release 0.3.0. Report it with that "
          "release, or run the study again.")
-EARLY = "(it has no column path_length, which trials have since then). Report it as it is, or run the study again."
 
 
 def stored(name):
@@ -64,8 +63,8 @@ def later(keep, version, schema):
 
 
 def foreign_journals():
-    yield File(f"journal of {BEFORE}", stored(f"journal-6-{BEFORE}"), "trials",
-               f"is a journal of version 6, this program's is {OWN}. {FINISH}")
+    yield File(f"journal of {BEFORE}", stored(f"journal-9-{BEFORE}"), "trials",
+               f"is a journal of version 9, this program's is {OWN}. {FINISH}")
     for keep in KEEPS:
         for version, schema in LATER:
             yield later(keep, version, schema)
@@ -78,10 +77,9 @@ def own_journals():
 
 
 def results_files():
-    yield File(f"results of {BEFORE}", stored(f"results-3-{BEFORE}.h5"), refused=AGAIN)
+    yield File(f"results of {BEFORE}", stored(f"results-4-{BEFORE}.h5"), refused=AGAIN)
     for keep in KEEPS:
         yield File(f"results of {keep}", stored(f"results-{keep}-{RELEASE}.h5"), keep)
-        yield File(f"results of {keep} without a column", stored(f"results-early-{keep}-{RELEASE}.h5"), keep, EARLY)
 
 
 def growing(keep, output):
@@ -99,8 +97,6 @@ class Versions:
         if file.refused:
             self.check_refused(file, done)
             self.counts["refused"] += 1
-            if file.refused is EARLY:
-                self.check_early(file)
         else:
             self.check_grown(file, done)
             self.counts["resumed"] += 1
@@ -141,14 +137,6 @@ class Versions:
             if done.returncode != 0:
                 raise Failed(f"{file.what}: {command[0]} ended with {done.returncode}: {done.stderr.strip()}")
             yield done
-
-    def check_early(self, file):
-        """A file without a column is reported and compared for the columns that it has, and not merged."""
-        compare = [("compare", "x.h5", str(self.whole("trials")))] if file.keep == "trials" else []
-        said = "".join(done.stdout for done in self.check_readers(file, *compare))
-        if "log_score" not in said or "path_length" in said:
-            raise Failed(f"{file.what}: it is not read for what it has: {said}")
-        self.check_refused(file, self.run(file, "merge", "x.h5", "-o", "y.h5"))
 
     def check_releases(self, file):
         """Both the program that began and the one that resumed are named."""

@@ -40,7 +40,7 @@ printf '[scenario]\nname = three\nworld = landmarks\n[landmarks]\ncount = 1\n' >
 mkdir -p "$seeds/journal"
 for keep in trials aggregates; do
   for trials in 3 257; do
-    (ulimit -f 180
+    (ulimit -f 150
       "$program" run tests/fuzz/journal.ini --trials $trials --keep $keep --quiet -o "$work/run.h5") 2>/dev/null || true
     mv "$work/run.h5.journal" "$seeds/journal/$trials-$keep"
   done

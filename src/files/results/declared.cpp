@@ -13,7 +13,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 
 namespace credence {
 
@@ -129,15 +128,6 @@ ScenarioResults declared_by_file(const Handle& group, const std::vector<Setting>
 }
 
 }  // namespace
-
-void leave_out_later_columns(const Handle& arm, std::vector<Column>& columns) {
-    static const std::set<std::string> later{"path_length"};
-    const std::vector<std::string> there =
-        words(hdf5::read_text(hdf5::Dataset(arm, "column").object(), "column_names"));
-    std::erase_if(columns, [&](const Column& column) {
-        return later.contains(column.name) && std::ranges::find(there, column.name) == there.end();
-    });
-}
 
 ScenarioResults read_declared(const Handle& group, const std::string& file, Keep keep) {
     const std::string text = hdf5::read_text(group, "scenario");

@@ -14,7 +14,4 @@ namespace credence {
 /// and InputError for a broken scenario.
 ScenarioResults read_declared(const hdf5::Handle& group, const std::string& file, Keep keep);
 
-/// Takes out of a world's columns those that came after the schema version and that the arm's group does not have.
-void leave_out_later_columns(const hdf5::Handle& arm, std::vector<Column>& columns);
-
 }  // namespace credence

@@ -199,7 +199,6 @@ ScenarioResults read_scenario_results(const std::string& name, const Opened& sou
     agree("length_unit", hdf5::read_text(group, "length_unit"), scenario.length_unit);
     check_sweep(group, scenario.sweep);
     require_links(group, scenario.arms);
-    leave_out_later_columns(hdf5::open_group(group, scenario.arms.front()), results.columns);
     for (const std::string& arm : scenario.arms) results.arms.push_back(read_arm(group, arm, results, source));
     results.kept_totals = std::make_shared<TotalsOfFile>(source, results);
     return results;

@@ -107,7 +107,8 @@ Html difference_table(const Comparison& pair) {
 
 Html difference_spread_table(const Comparison& pair) {
     Table table(pair.scenario + ": " + pair.name() + ", how the differences are spread",
-                    {"column", "pairs", "standard error", "sd", "Wilcoxon's z", "its p, uncorrected"});
+                    {"column", "pairs", "standard error", "sd", "Wilcoxon's z", "its p, uncorrected",
+                     "sign test's p"});
     for (const ComparedColumn& one : pair.columns) {
         const Summary& s = one.paired.difference;
         if (one.paired.pairs == 0) continue;
@@ -115,7 +116,7 @@ Html difference_spread_table(const Comparison& pair) {
             column_words(one.name, one.unit),
             {count_cell(static_cast<double>(one.paired.pairs)), number_cell_within(s.standard_error, s.standard_error),
              number_cell(s.standard_deviation, decimals_for(half_width(s.ci95), s.mean)),
-             number_cell(one.paired.wilcoxon_z, 2), p_cell(one.paired.wilcoxon_p)});
+             number_cell(one.paired.wilcoxon_z, 2), p_cell(one.paired.wilcoxon_p), p_cell(one.paired.sign_p)});
     }
     return html_of(table);
 }
