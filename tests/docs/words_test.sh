@@ -10,6 +10,8 @@ trap 'rm -f "$words" "$words.md"' EXIT
 cat >"$words" <<'END'
 forks of this (one|process) = forked worker processes
 (state|component) blocks? = component group
+lost trials? = diverged trial
+misshapen = non-chi-square
 blocks? of components = component group
 published figures = published numbers
 END
