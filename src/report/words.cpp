@@ -198,8 +198,8 @@ bool is_of_logs(const ArmReport& arm) {
 /// `one log of 3000 steps, worth about 55 independent runs (segments of 54 steps)`
 std::string log_text(const ArmReport& arm) {
     const SegmentEvidence& segments = arm.evidence.segments;
-    const std::string logs = arm.trials == 1 ? "one log of " : std::to_string(arm.trials) + " logs of together ",
-                      text = logs + std::to_string(segments.steps_of_runs) + " steps";
+    const std::string runs = arm.trials == 1 ? "one log of " : std::to_string(arm.trials) + " runs of together ",
+                      text = runs + std::to_string(segments.steps_of_runs) + " steps";
     if (segments.steps == 0) return text;
     return text + ", worth about " + segments.worth() + " (segments of " + std::to_string(segments.steps) + " steps)";
 }
