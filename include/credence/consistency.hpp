@@ -174,8 +174,8 @@ Interval over_steps95(const GroupEvidence& group);
 /// of its innovations alone. Where too many trials failed, findings are of the others, and the verdict is `failed`.
 Consistency judge(const Evidence& evidence, const Limits& limits);
 
-/// What carries errors that were found too large: `about_means` is the evidence of errors about their mean at each step,
-/// and `share` what that mean carries.
+/// What carries errors that were found too large: `about_means` is the evidence of errors about their mean at each
+/// step, and `share` what that mean carries.
 Attribution attribute(const Evidence& evidence, const Consistency& verdict, const Evidence& about_means, double share);
 
 /// `mean`, `mean beside too large P`, `both`, `spread`, `unknown`

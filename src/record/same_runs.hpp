@@ -14,7 +14,7 @@ void require_same_runs(const RecordSource& first, const RecordSource& record);
 struct SharedSteps {
     std::int64_t of_any = 0, of_all = 0;  ///< of some record; of all, with the same components in the state
     std::vector<std::int64_t> of_each;
-    std::vector<std::uint32_t> states;    ///< [trials, steps] a hash of these components; 1: not all agree, 0: no record
+    std::vector<std::uint32_t> states;    ///< [trials, steps] hash of these components; 1: not all agree, 0: none
     std::int64_t trials = 0, steps = 0, n = 0;
 
     /// Adds a record. Throws RecordError where it has not as many runs, steps and components as the first.

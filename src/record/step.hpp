@@ -57,7 +57,7 @@ struct RecordShape {
     /// Its own columns, beside those that every record has, and their values [columns][trials].
     std::vector<Column> columns;
     std::vector<std::vector<double>> column_values;
-    /// Whether a step of a trial counts in a comparison with other records; empty: all do. Others must be right as well.
+    /// Whether a step of a trial counts in a comparison with other records; empty: all do. Others must be right, too.
     std::function<bool(std::int64_t trial, int step)> compared{};
     bool has_errors = true;              ///< false: NEES alone
     bool of_innovations = false;         ///< the errors are innovations

@@ -80,8 +80,8 @@ struct JudgedSize {
 /// What can be said of it over all steps, each at a one-sided level.
 MeanClaim claim_on_size(PositiveSample sample, int dimension, double level, const Evidence& evidence, double margin);
 
-/// The smallest faults of the whole state's size that such evidence shows in 90 % of studies: NEES/dimension that is too
-/// small, and too large. NaN where there is none up to a factor of 100.
+/// The smallest faults of the whole state's size that such evidence shows in 90 % of studies: NEES/dimension that is
+/// too small, and too large. NaN where there is none up to a factor of 100.
 Interval smallest_faults(const Evidence& evidence, const Limits& limits);
 
 /// Finds it too large or too small. `place`: of the group among all that are judged.
