@@ -28,6 +28,12 @@ def _stop(*_: object) -> None:
     raise KeyboardInterrupt
 
 
+def _ignore_stops() -> None:
+    for number in _stops:
+        if signal.getsignal(number) is _stop:
+            signal.signal(number, signal.SIG_IGN)
+
+
 def _stop_again(lost: sys.UnraisableHookArgs) -> None:
     """Stop a little later where a signal came in the middle of what cannot raise, such as a weak reference's end."""
     if issubclass(lost.exc_type, KeyboardInterrupt):
@@ -115,9 +121,8 @@ def obeyed(name: str, words: Sequence[str]) -> int | None:
         _calls.speak_as(f"credence {name}")
         return _code_of(name, module.main, words)
     except KeyboardInterrupt:
+        _ignore_stops()  # one that `_stop_again` sends may still come
         _say(name, "it was stopped.")
         return STOPPED[name]
     finally:  # at Python's end nothing is left to stop
-        for number in _stops:
-            if signal.getsignal(number) is _stop:
-                signal.signal(number, signal.SIG_IGN)
+        _ignore_stops()
