@@ -94,7 +94,9 @@ public:
             status_ = Status::non_finite;
             status_pose_ = static_cast<int>(step_);
         }
-        if (status_ == Status::completed && nees_ratio() > diverged_nees_ratio) status_ = Status::diverged;
+        const int numbers = (case_.scenario.poses - 1) * case_.shape.n;
+        if (status_ == Status::completed && numbers >= least_diverged_numbers && nees_ratio() > diverged_nees_ratio)
+            status_ = Status::diverged;
     }
 
     std::size_t arm() const override { return arm_; }
