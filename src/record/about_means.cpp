@@ -1,6 +1,5 @@
 #include "record/about_means.hpp"
 
-#include "record/presence.hpp"
 #include "record/read.hpp"
 #include "record/totals.hpp"
 
@@ -23,19 +22,12 @@ struct StepSums {
             weight = Eigen::MatrixXd::Zero(n, n);
             weighted = sum = Eigen::VectorXd::Zero(n);
         }
-        std::vector<Eigen::Index> here;
-        for (Eigen::Index j = 0; j < n; ++j)
+        std::vector<int> here;
+        for (int j = 0; j < n; ++j)
             if (step.here.empty() || step.here[static_cast<std::size_t>(j)]) here.push_back(j);
-        const auto count = static_cast<Eigen::Index>(here.size());
         const Eigen::VectorXd e = step.e(here);
-        Eigen::MatrixXd inverse;
-        if (step.P.size() > 0) {
-            const Eigen::MatrixXd P = step.P(here, here);
-            inverse = P.llt().solve(Eigen::MatrixXd::Identity(count, count));
-        } else {
-            const Eigen::VectorXd variances = step.variances(here);
-            inverse = variances.cwiseInverse().asDiagonal();
-        }
+        const Eigen::MatrixXd inverse =
+            covariance_of(step, here).llt().solve(Eigen::MatrixXd::Identity(e.size(), e.size()));
         const Eigen::VectorXd solved = inverse * e;
         weight(here, here) += inverse;
         weighted(here) += solved;
@@ -79,13 +71,8 @@ bool has_step_means(const RecordShape& shape) {
 AboutMeans read_about_means(const RecordReader& reader, const std::string& name, const std::vector<char>& counted) {
     std::vector<StepSums> sums(static_cast<std::size_t>(reader.shape().steps));
     const auto is_counted = [&](const RecordStep& step) { return counted[static_cast<std::size_t>(step.trial)] != 0; };
-    PresenceChecker presence(reader.shape());
-    CheckedStep checked;
-    each_step(reader, [&](const RecordStep& step) {
-        if (!is_counted(step)) return;
-        if (step.step == 0) presence.start_trial();
-        if (reader.shape().covers(step.trial, step.step) && presence.check(step, checked) == Presence::there)
-            sums[static_cast<std::size_t>(step.step)].add(checked);
+    each_present_step(reader, [&](const RecordStep& step, const CheckedStep& checked) {
+        if (is_counted(step)) sums[static_cast<std::size_t>(step.step)].add(checked);
     });
     std::vector<Eigen::VectorXd> means;
     for (const StepSums& step : sums) means.push_back(step.mean());

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 namespace credence {
 
@@ -17,6 +18,13 @@ Record read_record(const RecordReader& reader, const std::string& name, const Re
 /// Calls `use` with every step of every trial, in order.
 void each_step(const RecordReader& reader, const std::function<void(const RecordStep&)>& use,
                const ReportProgress& progress = {});
+
+/// Calls `use` with every step that is there and whole, in order.
+void each_present_step(const RecordReader& reader,
+                       const std::function<void(const RecordStep&, const CheckedStep&)>& use);
+
+/// Of these components: their part of P, or a diagonal where the record has variances alone.
+Eigen::MatrixXd covariance_of(const CheckedStep& step, const std::vector<int>& components);
 
 /// Throws InputError where `read_record` would, and reads no more than this needs.
 void check_record(const RecordArrays& arrays);

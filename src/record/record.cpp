@@ -27,6 +27,22 @@ void each_step(const RecordReader& reader, const std::function<void(const Record
     });
 }
 
+void each_present_step(const RecordReader& reader,
+                       const std::function<void(const RecordStep&, const CheckedStep&)>& use) {
+    PresenceChecker presence(reader.shape());
+    CheckedStep checked;
+    each_step(reader, [&](const RecordStep& step) {
+        if (step.step == 0) presence.start_trial();
+        if (reader.shape().covers(step.trial, step.step) && presence.check(step, checked) == Presence::there)
+            use(step, checked);
+    });
+}
+
+Eigen::MatrixXd covariance_of(const CheckedStep& step, const std::vector<int>& components) {
+    if (step.P.size() > 0) return step.P(components, components);
+    return step.variances(components).asDiagonal();
+}
+
 namespace {
 
 Record read_record(const RecordReader& reader, const std::string& name, const ReportProgress& progress, int segments,

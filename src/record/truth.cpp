@@ -6,7 +6,6 @@
 #include "base/nan.hpp"
 #include "numeric/decompositions.hpp"
 #include "record/check.hpp"
-#include "record/presence.hpp"
 #include "record/read.hpp"
 
 namespace credence {
@@ -38,10 +37,9 @@ struct TruthSums {
             std::vector<int> members = members_of(shape.groups[b]);
             std::erase_if(members, [&](int j) { return !step.here[static_cast<std::size_t>(j)]; });
             if (shape.source(b) == GroupSource::nothing || (b > 0 && !step.whole(shape.groups[b]))) continue;
+            const bool of_its_own = shape.source(b) == GroupSource::own;
             const Eigen::MatrixXd R = step.R(members, members),
-                                  sum = shape.source(b) == GroupSource::own ? step.own[b]
-                                        : shape.has_variances ? Eigen::MatrixXd(step.variances(members).asDiagonal())
-                                                              : Eigen::MatrixXd(step.P(members, members));
+                                  sum = of_its_own ? step.own[b] : covariance_of(step, members);
             const CholeskyFactor factor(sum);
             shares[b].add(factor.solve_lower(factor.solve_lower(R).transpose()).trace() /
                           static_cast<double>(members.size()));
@@ -58,12 +56,8 @@ TruthSums sums_of(const RecordReader& reader, const ScenarioResults& added) {
     const std::vector<double>& statuses = added.arms.front().columns.in_memory()[status_column(added.columns)];
     TruthSums sums{std::vector<Mean>(static_cast<std::size_t>(shape.steps) * n), std::vector<Mean>(shape.groups.size()),
                    std::vector<Mean>(n)};
-    PresenceChecker presence(shape);
-    CheckedStep checked;
-    each_step(reader, [&](const RecordStep& step) {
-        if (step.step == 0) presence.start_trial();
-        if (counts(static_cast<Status>(static_cast<int>(statuses[static_cast<std::size_t>(step.trial)]))) &&
-            shape.covers(step.trial, step.step) && presence.check(step, checked) == Presence::there)
+    each_present_step(reader, [&](const RecordStep& step, const CheckedStep& checked) {
+        if (counts(static_cast<Status>(static_cast<int>(statuses[static_cast<std::size_t>(step.trial)]))))
             sums.add(shape, step.step, checked);
     });
     return sums;

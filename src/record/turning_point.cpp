@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "numeric/decompositions.hpp"
-#include "record/presence.hpp"
 #include "record/read.hpp"
 
 namespace credence {
@@ -39,15 +38,10 @@ std::vector<double> truth_sigmas(const RecordReader& reader, const std::vector<i
                                  const std::vector<double>& nees) {
     const RecordShape& shape = reader.shape();
     const auto each = [&](const auto& use) {
-        PresenceChecker presence(shape);
-        CheckedStep checked;
-        each_step(reader, [&](const RecordStep& step) {
-            if (step.step == 0) presence.start_trial();
-            if (!shape.covers(step.trial, step.step) || presence.check(step, checked) != Presence::there) return;
+        each_present_step(reader, [&](const RecordStep& step, const CheckedStep& checked) {
             if (std::ranges::all_of(components, [&](int j) { return checked.here[static_cast<std::size_t>(j)] != 0; }))
                 use(static_cast<std::size_t>(step.trial), Eigen::VectorXd(checked.e(components)),
-                    shape.has_variances ? Eigen::MatrixXd(checked.variances(components).asDiagonal())
-                                        : Eigen::MatrixXd(checked.P(components, components)));
+                    covariance_of(checked, components));
         });
     };
     const Eigen::VectorXd none = Eigen::VectorXd::Zero(std::ssize(components));
