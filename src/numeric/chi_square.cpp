@@ -88,7 +88,7 @@ EquiprobableCells::EquiprobableCells(int degrees) {
 
 std::shared_ptr<const EquiprobableCells> equiprobable_cells(int degrees) {
     static std::mutex mutex;
-    static std::map<int, std::shared_ptr<const EquiprobableCells>> kept;
+    static auto& kept = *new std::map<int, std::shared_ptr<const EquiprobableCells>>;  // of runs whose process exits, too
     const std::lock_guard lock(mutex);
     auto& cells = kept[degrees];
     if (!cells) cells = std::make_shared<const EquiprobableCells>(degrees);

@@ -13,10 +13,11 @@ namespace credence {
 namespace {
 
 std::vector<std::unique_ptr<const World>>& registry() {
-    static std::vector<std::unique_ptr<const World>> all = [] {
-        std::vector<std::unique_ptr<const World>> known;
-        known.push_back(deformable_world());
-        known.push_back(landmark_world());
+    // A run in another thread needs the worlds while the process exits.
+    static auto& all = *[] {
+        auto* known = new std::vector<std::unique_ptr<const World>>;
+        known->push_back(deformable_world());
+        known->push_back(landmark_world());
         return known;
     }();
     return all;

@@ -45,7 +45,7 @@ hobj_ref_t reference_to(const Handle& object) {
 
 Handle new_group(const Handle& parent, const std::string& name) {
     const Place place{[&] { return place_of(parent, name); }};
-    static const Handle creation = creation_properties(H5P_GROUP_CREATE);
+    static const Handle& creation = *new Handle(creation_properties(H5P_GROUP_CREATE));  // of runs whose process exits
     return {H5Gcreate2(parent.id(), name.c_str(), H5P_DEFAULT, creation.id(), H5P_DEFAULT), H5Gclose, place,
             "HDF5 could not make this group"};
 }
@@ -77,7 +77,7 @@ Handle new_dataset(const Handle& group, const std::string& name, Type type, cons
     const Place place{[&] { return place_of(group, name); }};
     const std::string problem = "HDF5 could not make this dataset";
     const Handle space = dataspace(extents, place);
-    static const Handle creation = creation_properties(H5P_DATASET_CREATE);
+    static const Handle& creation = *new Handle(creation_properties(H5P_DATASET_CREATE));
     Handle dataset(H5Dcreate2(group.id(), name.c_str(), type.file, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
                    H5Dclose, place, problem);
     write_text(dataset, "long_name", description.long_name);
