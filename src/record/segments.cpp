@@ -91,7 +91,7 @@ void SegmentPlanner::cut_all(double steps) {
 }
 
 /// Ten autocorrelation times, and no more segments than moments are kept of. Where those are too few, as long as there
-/// are enough of, down to five autocorrelation times.
+/// are enough of, down to five autocorrelation times. Then as many in the longest run, so long that they leave no step.
 void SegmentPlanner::choose_length() {
     double longest = 0;
     for (const auto& [run, present] : uncut_)
@@ -104,6 +104,11 @@ void SegmentPlanner::choose_length() {
     cut_all(std::min(length, longest));
     for (double parts = 1; std::ssize(found_.run) < least_segments && found_.steps > shortest; ++parts)
         if (const double steps = std::floor(longest / parts); steps < found_.steps) cut_all(std::max(steps, shortest));
+    const double chosen = found_.steps, stretched = std::floor(longest / std::floor(longest / chosen));
+    const auto count = std::ssize(found_.run);
+    if (stretched == chosen) return;
+    cut_all(stretched);
+    if (std::ssize(found_.run) < count) cut_all(chosen);  // shorter runs have no room for as many
 }
 
 RecordSegments SegmentPlanner::finish(const RecordReader& reader, const std::string& name) {

@@ -373,6 +373,7 @@ def segment_length(time, runs, steps):
     shortest, parts = int(np.ceil(np.ceil(10 * time) / 2)), 1
     while count(length) < LEAST_SEGMENTS and length > shortest:
         length, parts = min(length, max(steps // parts, shortest)), parts + 1
+    length = steps // (steps // length)
     return length if count(length) >= max(LEAST_SEGMENTS, 2 * runs) else 0
 
 

@@ -144,7 +144,8 @@ TEST_CASE("segments: their number follows from the autocorrelation, the number o
     const SegmentEvidence found = segments(logs(1, 4000, 0.5));
     CHECK(found.count);
     CHECK(found.autocorrelation_time == Approx(1.5).epsilon(0.35));
-    CHECK(found.steps == std::ceil(10 * found.autocorrelation_time));
+    const int ten_times = static_cast<int>(std::ceil(10 * found.autocorrelation_time));
+    CHECK(found.steps == 4000 / (4000 / ten_times));
     CHECK(std::ssize(found.run) == 4000 / found.steps);
     CHECK(segments(logs(3, 500, 0), 30).run.size() == 3 * (500 / 30));
     CHECK(!segments(logs(1, 500, 0), 30).count);  // 16 are fewer than 20
@@ -154,6 +155,10 @@ TEST_CASE("segments: their number follows from the autocorrelation, the number o
         CHECK(several.count);
         CHECK(std::ssize(several.run) == runs * (100 / several.steps));
     }
+    const SegmentEvidence two = segments(logs(40, 41, 0));  // two of ten times it leave steps over: these do not
+    CHECK(two.steps == 20);
+    CHECK(std::ceil(10 * two.autocorrelation_time) < 20);
+    CHECK(two.run.size() == 80);
     CHECK(!segments(logs(20, 12, 0)).count);  // as many runs are trials
     CHECK(segments(logs(201, 100, 0)).run.empty());
     CHECK(segments(logs(20, 100, 0), 10).run.size() == 200);
