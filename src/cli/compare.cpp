@@ -47,16 +47,17 @@ void check_paths(const std::vector<std::string>& paths) {
         if (!seen.insert(path).second) throw InputError("repeated file " + path, {}, "Name each once");
 }
 
-/// The files of records of the same runs: those of a path are arms of one scenario.
-std::vector<StudyFile> read_record_files(const std::vector<std::string>& paths) {
-    std::vector<std::string> all;
-    std::vector<std::size_t> file_of;
-    for (std::size_t i = 0; i < paths.size(); ++i)
-        for (const std::string& record : records_in(paths[i])) all.push_back(record), file_of.push_back(i);
-    if (all.size() == 1) throw InputError("compare takes several records of the same runs", {}, "Give another");
-    SharedSteps shared;
-    std::vector<Record> records = read_same_runs(all, shared);
+/// Files to compare, and, of records that all have it, with the covariance of the truth's errors added to P.
+struct ReadFiles {
+    std::vector<StudyFile> files, added{};
+};
+
+/// Those of a path are arms of one scenario. `all`: the paths of the records, each of the file in `file_of`.
+std::vector<StudyFile> files_of(std::vector<Record> records, const SharedSteps& shared,
+                                const std::vector<std::string>& paths, const std::vector<std::string>& all,
+                                const std::vector<std::size_t>& file_of) {
     std::vector<StudyFile> files;
+    if (records.empty()) return files;
     for (const std::string& path : paths) files.push_back({path, {}, true, {}, {}, shared.of_any, shared.of_all});
     for (std::size_t i = 0; i < all.size(); ++i) {
         StudyFile& file = files[file_of[i]];
@@ -77,16 +78,8 @@ std::vector<StudyFile> read_record_files(const std::vector<std::string>& paths) 
     return files;
 }
 
-/// Results files, or records of the same runs, which are called by their arms, or by scenario and arm.
-std::vector<StudyFile> read_files(const std::vector<std::string>& paths) {
-    const bool records = kind_of(paths.front()) == FileKind::record;
-    for (const std::string& path : paths) check_kind(path, {records ? FileKind::record : FileKind::results});
-    if (!records) {
-        std::vector<StudyFile> files;
-        for (const std::string& path : paths) files.push_back({path, read_results(path, 0).study});
-        return files;
-    }
-    std::vector<StudyFile> files = read_record_files(paths);
+/// Records are called by their arms, or by scenario and arm.
+void name_records(std::vector<StudyFile>& files) {
     std::vector<std::string> scenarios, arms;
     for (StudyFile& file : files) {
         ScenarioResults& results = file.study.scenarios.front();
@@ -98,7 +91,32 @@ std::vector<StudyFile> read_files(const std::vector<std::string>& paths) {
         for (std::size_t i = 0; i < files.size(); ++i)
             files[i].label = differ ? arms[i] : scenarios[i] + ":" + arms[i];
     }
-    return files;
+}
+
+/// Records of the same runs.
+ReadFiles read_record_files(const std::vector<std::string>& paths) {
+    std::vector<std::string> all;
+    std::vector<std::size_t> file_of;
+    for (std::size_t i = 0; i < paths.size(); ++i)
+        for (const std::string& record : records_in(paths[i])) all.push_back(record), file_of.push_back(i);
+    if (all.size() == 1) throw InputError("compare takes several records of the same runs", {}, "Give another");
+    SharedSteps shared;
+    std::vector<Record> added, records = read_same_runs(all, shared, added);
+    ReadFiles read{files_of(std::move(records), shared, paths, all, file_of),
+                   files_of(std::move(added), shared, paths, all, file_of)};
+    name_records(read.files);
+    name_records(read.added);
+    return read;
+}
+
+/// Results files, or records.
+ReadFiles read_files(const std::vector<std::string>& paths) {
+    const bool records = kind_of(paths.front()) == FileKind::record;
+    for (const std::string& path : paths) check_kind(path, {records ? FileKind::record : FileKind::results});
+    if (records) return read_record_files(paths);
+    ReadFiles read;
+    for (const std::string& path : paths) read.files.push_back({path, read_results(path, 0).study});
+    return read;
 }
 
 }  // namespace
@@ -109,8 +127,9 @@ Rendering compared(const Parsed& parsed) {
     if (const std::optional<std::string> arms = parsed.text("arms")) choice = read_arms(*arms, parsed.arguments);
     const double failed_limit = parse_failed(parsed);
     check_output_option(parsed);
-    const std::vector<StudyFile> files = read_files(parsed.arguments);
+    const auto [files, added] = read_files(parsed.arguments);
     CompareReport report = compare_studies(files, choice);
+    if (!added.empty()) require_same_sign(report, compare_studies(added, choice));
     report.failed_limit = failed_limit;
     report.of_records = files.front().is_record;
     return [report = std::move(report)](const std::string& format) {

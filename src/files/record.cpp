@@ -167,7 +167,7 @@ auto with_source(const std::string& path, const Attributes& attributes, const Us
 
 /// `shared`: the steps that count; none: all.
 Record read_steps(const std::string& path, const std::function<void(const Progress&)>& progress, int segments,
-                  const Attributes& attributes, const SharedSteps* shared) {
+                  const Attributes& attributes, const SharedSteps* shared, TruthUse truth = TruthUse::beside) {
     const OpenAgain again = [path, attributes](const std::function<void(RecordReader)>& use) {
         with_source(path, attributes, [&](const FileSource& source) { return use(RecordReader(source)), true; });
     };
@@ -175,6 +175,7 @@ Record read_steps(const std::string& path, const std::function<void(const Progre
         RecordReader reader(source);
         if (shared != nullptr)
             reader.compare([shared](std::int64_t trial, int step) { return shared->have(trial, step); });
+        reader.use_truth(truth);
         Record record = read_record(std::move(reader), path, progress, segments, again);
         if (source.has_attribute("log", "")) record.log = source.text("log", "");
         return record;
@@ -204,14 +205,24 @@ void require_same_runs(const std::string& first, const std::string& path) {
     });
 }
 
-std::vector<Record> read_same_runs(const std::vector<std::string>& paths, SharedSteps& shared) {
+std::vector<Record> read_same_runs(const std::vector<std::string>& paths, SharedSteps& shared,
+                                   std::vector<Record>& added) {
+    bool all_have_truth = true;
     for (const std::string& path : paths) {
         if (path != paths.front()) require_same_runs(paths.front(), path);
-        with_source(path, {}, [&](const FileSource& source) { return shared.add(RecordReader(source)), true; });
+        all_have_truth &= with_source(path, {}, [&](const FileSource& source) {
+            const RecordReader reader(source);
+            shared.add(reader);
+            return reader.shape().has_truth_covariance;
+        });
     }
-    std::vector<Record> records;
-    for (const std::string& path : paths) records.push_back(read_steps(path, {}, segments_off, {}, &shared));
-    return records;
+    const auto read = [&](TruthUse truth) {
+        std::vector<Record> records;
+        for (const std::string& path : paths) records.push_back(read_steps(path, {}, segments_off, {}, &shared, truth));
+        return records;
+    };
+    if (all_have_truth) added = read(TruthUse::added);
+    return read(TruthUse::beside);
 }
 
 }  // namespace credence

@@ -36,9 +36,11 @@ private:
 /// The records of a file, by the paths that `read_record` takes: its own, or FILE:ARM for each group that the root's
 /// attribute `arms` names; of FILE:ARM that one. Throws InputError where it cannot be read.
 std::vector<std::string> records_in(const std::string& path);
-/// Records of the same runs, by their paths, with the steps that all have. Throws InputError naming what shows that one
+/// Records of the same runs, by their paths, with the steps that all have; `added`: the same once more, with the
+/// covariance of the truth's errors added to P, empty unless all have it. Throws InputError naming what shows that one
 /// is not of the runs of the first [require_same_runs].
-std::vector<Record> read_same_runs(const std::vector<std::string>& paths, SharedSteps& shared);
+std::vector<Record> read_same_runs(const std::vector<std::string>& paths, SharedSteps& shared,
+                                   std::vector<Record>& added);
 
 /// The file of such a path.
 std::string record_file(const std::string& path);

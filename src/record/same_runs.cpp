@@ -66,7 +66,7 @@ void require_same_runs(const RecordSource& first, const RecordSource& record) {
                               "is " + text(here) + ", and that of the first record " + text(there),
                               "Give records of the same components in the same units and order");
     }
-    for (const char* path : {"error", "estimate", "trial", "truth", "time", "steps"}) {
+    for (const char* path : {"error", "estimate", "trial", "truth", "truth_covariance", "time", "steps"}) {
         if (!first.has(path) || !record.has(path)) continue;
         const DatasetPointer a = first.open(path, Numbers::any), b = record.open(path, Numbers::any);
         if (a->extents() != b->extents())

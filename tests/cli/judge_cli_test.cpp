@@ -197,6 +197,29 @@ TEST_CASE("compare: two records of the same runs are compared trial by trial") {
     check_refused(here.credence("compare a.h5"), "several records of the same runs");
 }
 
+TEST_CASE("compare: the truth's own covariance must not change the sign of what is concluded") {
+    const Workplace here;
+    write_correlated(here.path("small.h5"), 0, 0.5);  // right where half of the errors' variance is the truth's
+    write_correlated(here.path("right.h5"), 0, 1);    // right where the truth is exact
+    const auto compared = [&](const char* sigma) {
+        for (const char* name : {"small.h5", "right.h5"}) {
+            const Handle root(H5Fopen(here.path(name).c_str(), H5F_ACC_RDWR, H5P_DEFAULT), H5Fclose, "", "");
+            if (H5Aexists(root.id(), "truth_sigma") > 0) H5Adelete(root.id(), "truth_sigma");
+            if (*sigma != '\0') hdf5::write_text(root, "truth_sigma", sigma);
+        }
+        return Json::parse(here.credence("compare right.h5 small.h5 --format json").out)[0];
+    };
+    CHECK(compared("")["conclusion"] == "higher");
+    CHECK(!compared("").contains("with_truth"));
+    CHECK(compared("0.1")["conclusion"] == "higher");
+    CHECK(compared("0.1")["with_truth"]["ci95"][0] > 0);
+    const Json turned = compared("0.7071");
+    CHECK(turned["conclusion"] == "no difference shown");
+    CHECK(turned["log_score"]["ci95"][0] > 0);
+    CHECK(turned["with_truth"]["ci95"][1] < 0);
+    CHECK_THAT(here.credence("compare right.h5 small.h5").out, Contains("own covariance -0.068 [-0.080, -0.056]"));
+}
+
 TEST_CASE("judge: --segments takes a number of steps, auto or off") {
     const Workplace here;
     PlainRecord(7).write(here.path("trials.h5"));

@@ -147,4 +147,14 @@ CompareReport compare_studies(const std::vector<StudyFile>& files, const std::op
     return report;
 }
 
+void require_same_sign(CompareReport& report, const CompareReport& added) {
+    for (std::size_t i = 0; i < report.pairs.size(); ++i) {
+        ComparedPair& pair = report.pairs[i];
+        const ComparedPair& other = added.pairs[i];
+        pair.with_truth = other.comparison.columns.front().paired.difference;
+        const bool concluded = pair.conclusion == Conclusion::lower || pair.conclusion == Conclusion::higher;
+        if (concluded && other.conclusion != pair.conclusion) pair.conclusion = Conclusion::not_shown;
+    }
+}
+
 }  // namespace credence

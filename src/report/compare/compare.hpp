@@ -80,6 +80,7 @@ struct ComparedPair {
     double failure_p = 1;            ///< of Fisher's exact test on the shares that failed or diverged
     Conclusion failures = Conclusion::not_shown;    ///< on these shares
     Conclusion conclusion = Conclusion::not_shown;  ///< on the means of the pairs
+    std::optional<Summary> with_truth;  ///< the mean difference with the covariance of the truth's errors added to P
 
     bool not_run() const { return a.trials == 0 || b.trials == 0; }
     std::int64_t pairs() const { return comparison.columns.front().paired.pairs; }
@@ -105,6 +106,10 @@ struct CompareReport {
 /// but scenario.title and those of filter, control, planner, arms and published), or where nothing has both arms; and
 /// for arms of different files of which one keeps no trials.
 CompareReport compare_studies(const std::vector<StudyFile>& files, const std::optional<ArmsChoice>& choice);
+
+/// Concludes on a mean only where `added`, the same comparison with the covariance of the truth's errors added to P,
+/// does so: that the truth is exact, and that it is not, are both possible.
+void require_same_sign(CompareReport& report, const CompareReport& added);
 
 /// The comparison as text: the conclusions first, then a table with a row per column for each pair.
 std::string compare_text(const CompareReport& report);

@@ -52,6 +52,8 @@ Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
     for (const KeyDifference& key : pair.differences) behind["differences"][key.key] = Json::array({key.a, key.b});
     behind["of_a"] = side_json(pair.a);
     behind["of_b"] = side_json(pair.b);
+    if (pair.with_truth)
+        behind["with_truth"] = {{"mean", pair.with_truth->mean}, {"ci95", interval_json(pair.with_truth->ci95)}};
     if (pair.steps_of_any > 0) behind["steps"] = {{"any", pair.steps_of_any}, {"compared", pair.steps_of_all}};
     behind["root_seed"] = root_seed;
     behind["complete"] = pair.complete;

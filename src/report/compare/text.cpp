@@ -151,6 +151,13 @@ std::string compare_head(const CompareReport& report) {
 
 namespace {
 
+/// What the covariance of the truth's errors makes of the mean difference.
+std::string truth_text(const ComparedPair& pair) {
+    const int digits = decimals_of(pair.comparison.columns.front().paired);
+    return "; with the truth's own covariance " + number(pair.with_truth->mean, digits) + " " +
+           bracketed(pair.with_truth->ci95, digits);
+}
+
 /// That on the first column.
 std::string first_conclusion(const ComparedPair& pair) {
     const Comparison& comparison = pair.comparison;
@@ -170,7 +177,8 @@ std::string first_conclusion(const ComparedPair& pair) {
     const std::string not_shown = few ? "too few pairs to conclude (" : "no difference shown (";
     if ((few || pair.conclusion == Conclusion::not_shown) && !std::isfinite(mean))
         return text + not_shown + "the mean of " + comparison.name() + " is not finite)";
-    const std::string doubt = !(interval.low > 0 || interval.high < 0) ? ""
+    const std::string doubt = pair.with_truth                             ? truth_text(pair)
+                              : !(interval.low > 0 || interval.high < 0) ? ""
                               : few ? "; the sign test has p " + p_text(paired.sign_p)
                                     : "; not enough for all conclusions to hold together";
     if (few || pair.conclusion == Conclusion::not_shown)
@@ -185,7 +193,8 @@ std::string first_conclusion(const ComparedPair& pair) {
     return text + comparison.a + " is " + (lower ? "lower" : "higher") + " than " + comparison.b + " by " +
            number(std::abs(mean), digits) + " " + bracketed(size, digits) +
            (share < against ? " on average, though only in " : ", in ") + percent(share) + " of trials" +
-           (paired.ties >= 0.005 ? " (equal in " + percent(paired.ties) + ")" : "") + carried(pair);
+           (paired.ties >= 0.005 ? " (equal in " + percent(paired.ties) + ")" : "") +
+           (pair.with_truth ? truth_text(pair) : "") + carried(pair);
 }
 
 /// The columns behind the first that differ, with their mean differences.
