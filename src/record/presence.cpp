@@ -2,6 +2,7 @@
 
 #include "base/nan.hpp"
 #include "record/check.hpp"
+#include "record/source.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,11 @@
 #include "record/totals.hpp"
 
-#include "statistics/goodness.hpp"
-
-#include "record/results.hpp"
-#include "record/segments.hpp"
 #include "base/formatted.hpp"
 #include "base/nan.hpp"
+#include "numeric/chi_square.hpp"
+#include "record/results.hpp"
+#include "record/segments.hpp"
+#include "statistics/goodness.hpp"
 
 #include <algorithm>
 #include <cmath>
