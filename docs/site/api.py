@@ -14,6 +14,7 @@ SECTIONS = {
     "Verdicts": ("judge", "Record", "assert_consistent", "Verdict"),
     "Trials of a filter": ("simulate", "Run", "Simulation"),
     "What to change": ("tune", "Tuned"),
+    "Why": ("budget", "Budget"),
     "Studies of scenarios": ("run", "resume", "merge", "show", "report", "compare", "replay", "Report", "Comparison"),
     "Files": ("open", "Study", "Scenario", "Arm", "open_trajectories", "Trajectory"),
     "Pictures": ("plot", "animate"),

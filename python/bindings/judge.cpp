@@ -110,6 +110,7 @@ void write_results_of(const std::vector<nb::bytes>& files, std::uint64_t seed, c
             cli::check_kind(path, {cli::FileKind::record});
             Study one = study_of(read_record(path, {}, segments_off));
             ScenarioResults& results = one.scenarios.front();
+            if (results.scenario.name == "run") results.scenario.name = "record";  // /run of a file is reserved
             std::vector<Component>& components = results.scenario.components;
             while (std::ssize(components) < results.state_size())
                 components.push_back({"x" + std::to_string(components.size()), "1"});

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from credence._errors import Failure, InputError
     from credence._record import Record, Run
     from credence.arm import Arm, Scenario
+    from credence.budgeting import Budget, budget
     from credence.judging import Verdict, assert_consistent, judge
     from credence.pictures import animate, plot
     from credence.program import Comparison, Interrupted, Report, compare, merge, replay, report, resume, run, show
@@ -29,6 +30,7 @@ _modules = {  # each with what it has for users
     "_errors": ("Failure", "InputError"),
     "_record": ("Record", "Run"),
     "arm": ("Arm", "Scenario"),
+    "budgeting": ("Budget", "budget"),
     "judging": ("Verdict", "assert_consistent", "judge"),
     "pictures": ("animate", "plot"),
     "program": ("Comparison", "Interrupted", "Report", "compare", "merge", "replay", "report", "resume", "run", "show"),
@@ -41,6 +43,7 @@ _places = {name: module for module, names in _modules.items() for name in names}
 
 __all__ = [
     "Arm",
+    "Budget",
     "Comparison",
     "Failure",
     "InputError",
@@ -56,6 +59,7 @@ __all__ = [
     "Verdict",
     "animate",
     "assert_consistent",
+    "budget",
     "compare",
     "judge",
     "merge",

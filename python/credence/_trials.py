@@ -28,6 +28,7 @@ from credence import InputError, _arrays, _core
 from credence._errors import printable
 from credence._names import Named
 from credence._record import Run
+from credence._streams import Streams
 
 Array = npt.NDArray[Any]
 Arms = dict[str, dict[str, Any]]
@@ -44,13 +45,13 @@ def seed_sequence(seed: int, trial: int) -> np.random.SeedSequence:
     return np.random.SeedSequence(seed, spawn_key=(trial,))
 
 
-def generator(seed: int, trial: int) -> np.random.Generator:
-    """The generator of a trial, a pure function of seed and trial.
+def generator(seed: int, trial: int) -> Streams:
+    """The generator of a trial, a pure function of seed and trial, with named streams.
 
     It is ``Generator(Philox(key=key))`` with the two words ``key = SeedSequence(seed, spawn_key=(trial,))
     .generate_state(2, numpy.uint64)``. ``rng.spawn`` gives generators that are functions of seed and trial, too.
     """
-    return np.random.Generator(np.random.Philox(seed_sequence(seed, trial)))
+    return Streams(seed_sequence(seed, trial))
 
 
 class TimeReached(BaseException):

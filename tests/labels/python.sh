@@ -20,5 +20,5 @@ cd "$work"  # python/credence itself has no compiled module
 CREDENCE=$tree/build/credence pytest -q -p no:cacheprovider "$tree/python/tests"
 cd "$tree"
 mypy --cache-dir "$work/mypy" python/credence
-ruff check --no-cache python docs/site experiments/in_the_wild experiments/known experiments/tuning experiments/worlds \
+ruff check --no-cache python docs/site experiments/in_the_wild experiments/known experiments/tuning experiments/worlds experiments/budget \
   bench/peers bench/simulate_overhead.py
