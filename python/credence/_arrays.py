@@ -252,6 +252,21 @@ def of_many_runs(given: Mapping[str, Any]) -> dict[str, Array]:
     return arrays
 
 
+def _fitted(arrays: dict[str, Array]) -> dict[str, Array]:
+    """Columns [..., n, 1] as vectors, and one covariance for all runs, or for all steps, as that of each."""
+    for kind, states in (("covariance", ("error", "estimate", "truth")), ("innovation_covariance", ("innovation",))):
+        P = arrays.get(kind, np.empty(0))
+        for name in filter(arrays.__contains__, states):
+            of = arrays[name]
+            if of.ndim > 2 and of.shape[-1] == 1 < of.shape[-2] and P.shape == (*of.shape[:-1], of.shape[-2]):
+                arrays[name] = of[..., 0]
+        steps = next((arrays[name].shape for name in states if name in arrays), ())[:-1]
+        n = P.shape[-1] if P.ndim > 1 else 0
+        if len(steps) and P.shape in ((*steps[1:], n, n), (n, n)) and P.ndim < len(steps) + 2 and steps[-1] != n:
+            arrays[kind] = np.broadcast_to(P, (*steps, n, n))
+    return arrays
+
+
 def prepared(record: Record, runs: object = None) -> dict[str, Array]:
     """The arrays of a record, by their places in a file; `steps` is added if runs end at different steps.
 
@@ -269,6 +284,7 @@ def prepared(record: Record, runs: object = None) -> dict[str, Array]:
     else:
         arrays, lengths = _parted(given, runs)
         arrays["steps"] = lengths
+    arrays = _fitted(arrays)
     if "error" in arrays:
         _note_one_run(given, arrays["error"])
         _note_what_looks_like_steps_first(arrays["error"])

@@ -63,8 +63,8 @@ def parser() -> argparse.ArgumentParser:
     made.add_argument(
         "--names", nargs="+", action="extend", default=[], metavar="WHAT=NAME,…",
         help="of a table: columns, such as estimate=x,y,yaw truth=gx,gy,gyaw sigma=sx,sy,sa angles=yaw time=t "
-        "(docs/logs.md has all words); of .npz and .mat: arrays, such as error=e covariance=nav.P; of .mat order=C for "
-        "[step, n], F for [n, step]",
+        "(docs/logs.md has all words); of .npz and .mat: arrays, such as error=e covariance=nav.P; .mat may "
+        "need --order C for [step, n], F for [n, step]",
     )  # fmt: skip
     for name in _of_tables:
         made.add_argument(f"--{name}", type=parted, metavar="NAME,…", help=f"of a table: as {name}= of --names")
@@ -75,7 +75,7 @@ def parser() -> argparse.ArgumentParser:
         "ns); of times in text files: time, truth_time",
     )  # fmt: skip
     made.add_argument("--order", metavar="WORD,…", help="of covariances: upper, lower, rotation first, …")
-    made.add_argument("--manifold", choices=["SE3", "R3 x SO3"], help="what the covariance of a pose is of")
+    made.add_argument("--manifold", help="what the covariance of a pose is of: SE3 or 'R3 x SO3'; of arrays any")
     made.add_argument("--chart", choices=["local", "global"], help="the frame of the error: the body's or the world's")
     made.add_argument("--twist", action="store_true", default=None, help="of a bag: judge the velocities of Odometry")
     made.add_argument("--max-gap", type=float, metavar="SECONDS", help="between true poses that are interpolated (0.2)")
@@ -152,7 +152,7 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
     used["ulg"] = {"truth_topic", *_poses} - {"twist", "pair"} if given.truth_topic else {"rows"}
     if names or given.map:  # of a table
         used["text"] = {"truth", "names", "map", "units", "order", "max_gap", *_of_tables}
-    allowed = used.get(kind or "", {"names"})
+    allowed = used.get(kind or "", {"names", "order", "manifold", "chart"})
     for option in _of_logs:
         if getattr(given, option) not in (None, [], {}) and option not in allowed:
             raise InputError(f"{argument(option)}: says nothing about a log of this kind. Leave it out.")
@@ -175,10 +175,8 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
         return adapters.from_ulog(single, given.rows and given.rows.split(","))
     if kind in ("mat", "npz"):
         arrays = {what: name[0] for what, name in names.items()}
-        if kind == "npz":
-            return adapters.from_npz(single, arrays)
-        order = arrays.pop("order", None)
-        return adapters.from_mat(single, arrays, order=order)
+        order = given.order or arrays.pop("order", "")
+        return {"npz": adapters.from_npz, "mat": adapters.from_mat}[kind](single, arrays, order=order, **poses)
     if names or given.map:
         names |= {name: value for name in _of_tables if (value := getattr(given, name))}
         return _of_table(single, given, names)

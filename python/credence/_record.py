@@ -35,7 +35,8 @@ class Record:
     error : array [trial, step, n]
         Estimate - truth, in the chart of the covariance; NaN where a component is not in the state.
     covariance : array [trial, step, n, n] or [trial, step, n]
-        Joint covariances, or variances alone, in the square of the units of `error`.
+        Joint covariances, or variances alone, in the square of the units of `error`; [step, n, n] is that of every
+        run, and [n, n] that of every step.
     innovation, innovation_covariance : arrays [trial, step, m] and [trial, step, m, m]
         Both or neither; NaN in rows that were not observed.
     groups : dict, str or list of str

@@ -428,7 +428,7 @@ def test_a_mean_error_is_told_from_the_spread_about_it():
 @pytest.mark.filterwarnings("ignore:error. a table")
 def test_the_truths_own_covariance_has_one_meaning_in_every_form(tmp_path, program):
     rng = np.random.default_rng(2)
-    errors = rng.normal([0.5, -0.4], size=(60, 20, 2))
+    errors = rng.normal(size=(60, 20, 2)) + np.array([0.5, -0.4])
     named = {"component_names": ["x", "heading"], "component_units": ["m", "rad"], "groups": {"both": [0, 1]}}
     plain = {"error": errors, "covariance": np.broadcast_to(np.eye(2), (60, 20, 2, 2))}
     of = {**plain, **named}

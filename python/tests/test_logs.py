@@ -321,7 +321,8 @@ class TestMat:
         error, V = rng.normal(size=(60, 3)), np.tile([1.0, 2, 3], (60, 1))
         scipy.io.savemat(tmp_path / "a.mat", {"nav_e": {"vel": error, "filter": {"P": V}}, "nav": {"vel": 0.0}})
         names = {"error": "nav_e.vel", "covariance": "nav_e.filter.P"}
-        refused("fit both orders, or none. Give order", adapters.from_mat, tmp_path / "a.mat", names)
+        with pytest.warns(UserWarning, match=r"its arrays are taken for \[step, n\]. Say order F if not"):
+            assert adapters.from_mat(tmp_path / "a.mat", names)["error"].shape == (60, 3)
         arguments = adapters.from_mat(tmp_path / "a.mat", names, order="C")
         np.testing.assert_array_equal(arguments["error"], error)
         np.testing.assert_array_equal(arguments["covariance"], V)
@@ -333,7 +334,7 @@ class TestMat:
 
     def test_refusals(self, tmp_path: Path) -> None:
         scipy.io.savemat(tmp_path / "a.mat", {"error": np.ones((3, 4)), "covariance": np.ones((3, 4))})
-        refused(r"fit both orders, or none. Give order", adapters.from_mat, tmp_path / "a.mat")
+        refused(r"covariances of \[3, 4\] fit both orders, or none. Say order C", adapters.from_mat, tmp_path / "a.mat")
         assert adapters.from_mat(tmp_path / "a.mat", order="F")["error"].shape == (4, 3)
         refused("there is no array e in it .it has error, cov", adapters.from_mat, tmp_path / "a.mat", {"error": "e"})
         (tmp_path / "b.mat").write_text("words")

@@ -72,7 +72,7 @@ def _found(source: str, values: Array, n: int, roots: bool) -> str:
 
 def words_of(order: str | Sequence[str] | None, *more: str) -> list[str]:
     """The words that say an order, of a text in which commas part them, or as they are; `more` are known besides."""
-    words = [word.strip() for word in order.split(",")] if isinstance(order, str) else order or []
+    words = [word.strip() for word in order.split(",") if word.strip()] if isinstance(order, str) else order or []
     if not isinstance(words, (list, tuple)):
         raise invalid("order", order, "must be words", "Give some, such as lower")
     words = [str(word) for word in words]

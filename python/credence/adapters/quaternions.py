@@ -52,6 +52,17 @@ def _to_rotation(quaternions: Array, chart: str, order: str) -> Array:
     return 2 * G
 
 
+def quaternion_at(values: Array) -> int | None:
+    """Where in [..., q] four numbers begin that are of length 1 and change, as those of a quaternion."""
+    rows = values.reshape(-1, values.shape[-1])
+    rows = rows[np.isfinite(rows).all(axis=1)]
+    for i in range(rows.shape[1] - 3 if len(rows) > 1 else 0):
+        four = rows[:, i : i + 4]
+        if np.abs(np.linalg.norm(four, axis=1) - 1).max() < 1e-3 and np.ptp(four, axis=0).max() > 0:
+            return i
+    return None
+
+
 def from_quaternions(**arguments: Any) -> dict[str, Any]:
     """Arguments of :func:`credence.judge` with the covariance of the four numbers of a quaternion.
 
