@@ -151,7 +151,7 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
     }
     used["ulg"] = {"truth_topic", *_poses} - {"twist", "pair"} if given.truth_topic else {"rows"}
     if names or given.map:  # of a table
-        used["text"] = {"truth", "names", "map", "units", "order", "max_gap", *_of_tables}
+        used["text"] = {"truth", "names", "map", "units", "order", *_of_tables, *_poses} - {"twist"}
     allowed = used.get(kind or "", {"names", "order", "manifold", "chart"})
     for option in _of_logs:
         if getattr(given, option) not in (None, [], {}) and option not in allowed:
@@ -179,11 +179,13 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
         return {"npz": adapters.from_npz, "mat": adapters.from_mat}[kind](single, arrays, order=order, **poses)
     if names or given.map:
         names |= {name: value for name in _of_tables if (value := getattr(given, name))}
-        return _of_table(single, given, names)
+        return _of_table(single, given, names, poses)
     return trajectories.from_files(given.log, given.truth, given.times, given.units, given.order, **poses)
 
 
-def _of_table(log: Any, given: argparse.Namespace, names: dict[str, list[str]]) -> dict[str, Any]:
+def _of_table(
+    log: Any, given: argparse.Namespace, names: dict[str, list[str]], poses: dict[str, Any]
+) -> dict[str, Any]:
     from credence.adapters import from_table
     from credence.adapters.declared import KEYS
 
@@ -195,8 +197,7 @@ def _of_table(log: Any, given: argparse.Namespace, names: dict[str, list[str]]) 
         raise InputError(
             "a verdict is on one table at a time. Put runs below each other, and name their column (runs)."
         )
-    more = {"max_gap": given.max_gap, "order": given.order}
-    options: dict[str, Any] = names | {name: value for name, value in more.items() if value is not None}
+    options: dict[str, Any] = names | poses | ({"order": given.order} if given.order else {})
     return from_table(log, given.truth[0] if given.truth else None, map=given.map, units=given.units, **options)
 
 

@@ -34,6 +34,7 @@ def answer(words: list[str]) -> str:
     if code:
         return {2: "refused"}[code]
     (arm,) = json.loads(Path("verdict.json").read_text())
+    Path("hints").write_text("\n".join(arm["hints"]))
     ratios = [group["nees_ratio"] for group in arm["groups"] if group["nees_ratio"] is not None]
     is_right = arm["verdict"] in ("consistent", "undecided") and not arm["findings"] and ratios
     return "right" if is_right and all(0.85 < ratio < 1.15 for ratio in ratios) else str(arm["verdict"])
@@ -51,12 +52,13 @@ def test_the_answer(
     assert re.search(made.said, said, re.MULTILINE), said
     assert bool(made.said) == ("judge: " in said), said  # of a log about which there is nothing to say
     if made.asks:
-        asked = re.search(r"(--units .*?)(, | if|\.$)", said.splitlines()[0])
+        line = next(line for line in said.splitlines() if re.search(made.said, line))
+        asked = re.search(r"(?:[Ss]ay |as |with |\()(--.*?)(, or| if|, if| of a|\.$|\. Is)", line)
         assert asked, said
         found = answer([*words, *shlex.split(asked[1])])
-        assert found == "right", capfd.readouterr().err
-    else:
-        assert found == made.answer, said
+        said = capfd.readouterr().err
+    assert re.fullmatch(made.answer, found), said
+    assert not made.hints or re.search(made.hints, Path("hints").read_text())
 
 
 class TestFromTable:

@@ -124,10 +124,11 @@ class TestPoses:
     @pytest.mark.parametrize("late", [0.0, 0.12, -0.35])
     def test_a_time_offset_is_found_and_not_applied(self, tmp_path: Path, late: float) -> None:
         of = log(400)
+        how: Any = {"manifold": "R3 x SO3", "chart": "global"}
         files = tum(tmp_path, of._replace(time=of.time + late))
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
-            arguments = adapters.from_tum(*files)
+            arguments = adapters.from_tum(*files, **how)
         np.testing.assert_allclose(arguments["time"][0], of.time + late, atol=1e-6)
         if not late:
             assert not said
@@ -135,8 +136,8 @@ class TestPoses:
         (message,) = [str(one.message) for one in said]
         assert "would be" in message
         assert float(message.split("with ")[1].split(" s added")[0]) == pytest.approx(-late, abs=0.003)
-        again = adapters.from_tum(*files, time_offset=-late)  # says nothing: warnings are errors here
-        np.testing.assert_allclose(again["truth"], adapters.from_tum(*tum(tmp_path, of))["truth"], atol=1e-6)
+        again = adapters.from_tum(*files, time_offset=-late, **how)  # says nothing: warnings are errors here
+        np.testing.assert_allclose(again["truth"], adapters.from_tum(*tum(tmp_path, of), **how)["truth"], atol=1e-6)
 
     def test_poses_at_the_same_time(self, tmp_path: Path) -> None:
         of = log(30)
@@ -769,7 +770,7 @@ class TestCommand:
             (["table.csv", "--names", "error=x", "error=y", "sigma=s"], "--names: error is given twice"),
             (["table.csv", "--names", "error=x", "sigma=s", "--units", "y=deg"], "judge: --units: y is nothing that"),
             (["table.csv", "--names", "error=a", "sigma=s", "angles=a"], "in degrees? Say --units a=deg, or a=rad"),
-            (["table.csv", "--names", "error=x", "sigma=s", "--pair"], "--pair: says nothing about a log of this kind"),
+            (["table.csv", "--names", "error=x", "sigma=s", "--pair"], "invalid --pair (two filters have estimates)"),
             (["a.npz", "--units", "a=deg"], "--units: says nothing about a log of this kind"),
             (["estimate.txt", "--truth", "truth.txt", "--max-gap", "1e-9"], "or a larger --max-gap"),
         ],
@@ -829,7 +830,12 @@ class TestPage:
         write(tmp_path / "times.txt", of.time)
         turn = np.degrees(1.0)
         frame = self.frame()
-        frame.assign(yaw=turn * frame.yaw, gyaw=turn * frame.gyaw, syaw=turn * frame.syaw).to_csv("table.csv")
+        frame = frame.assign(yaw=turn * frame.yaw, gyaw=turn * frame.gyaw, syaw=turn * frame.syaw)
+        frame.assign(dx=frame.x - frame.gx, dy=frame.y - frame.gy).to_csv("table.csv")
+        both = np.c_[of.time, of.pose[:, [0, 1, 2, 6, 3, 4, 5]], truth_at(of.time - 100)[:, [0, 1, 2, 6, 3, 4, 5]]]
+        names = ["t", *"xyz", *(f"q{a}" for a in "wxyz"), *"XYZ", *(f"Q{a}" for a in "WXYZ")]
+        sigmas = dict(zip(("sx", "sy", "sz", "sa", "sb", "sc"), np.sqrt(np.diag(of.covariance[0]))))
+        pd.DataFrame(both, columns=names).assign(**sigmas).to_csv("poses.csv")
         page = (Path(__file__).parents[2] / "docs" / "logs.md").read_text(encoding="utf-8")
         Path("drive.toml").write_text(page.split("```toml\n")[1].split("```")[0], encoding="utf-8")
         self.drive().to_csv("drive.csv")
@@ -858,7 +864,7 @@ class TestPage:
         page = (Path(__file__).parents[2] / "docs" / "logs.md").read_text(encoding="utf-8")
         code = {name: page.split(f"```{name}\n")[1].split("```")[0] for name in ("sh", "python")}
         commands = [shlex.split(line, comments=True) for line in code["sh"].splitlines() if line.startswith("python")]
-        assert len(commands) == 12
+        assert len(commands) == 14
         for _, _, _, _, *words in commands:
             assert judge_command(words) == 0, capfd.readouterr().err
             assert "one log of " in capfd.readouterr().out

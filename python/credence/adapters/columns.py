@@ -10,13 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from credence._arrays import runs_of
-from credence._errors import InputError, argument
+from credence._errors import InputError, argument, wrong
 from credence.adapters.components import Components, interpolated, largest_of
 from credence.adapters.declared import declared, kinds_of, looks_like_innovation, record_names
 from credence.adapters.missing import Rows, held, not_known, say_left_out, variances_of, without
 from credence.adapters.named_columns import NamedColumns
-from credence.adapters.orders import matrices_of
-from credence.adapters.tables import Array, neighbours, note, require_positive, say_matched, units_given
+from credence.adapters.pose_columns import NEEDS_TIME, has_poses, table_of_poses
+from credence.adapters.poses import say_independent
+from credence.adapters.tables import Array, neighbours, note, say_matched, units_given
 
 Names = str | Sequence[str]
 
@@ -46,6 +47,7 @@ def from_table(
     units: Mapping[str, str] | None = None,
     order: Names | None = None,
     max_gap: float = 0.2,
+    **options: Any,
 ) -> dict[str, Any]:
     """Columns of a CSV file or a frame, by their names.
 
@@ -62,7 +64,7 @@ def from_table(
     error : list of str
         Columns of estimate - truth; or else
     estimate, truth : lists of str
-        columns of both, one for each component.
+        columns of both, one for each component; or seven, x, y, z and a quaternion, or its four alone: a pose.
     sigma, variance, covariance : list of str
         One of them: standard deviations, variances, or the covariance row by row, whole or a triangle (`order`).
     innovation, innovation_sigma, innovation_variance, innovation_covariance : lists of str
@@ -81,9 +83,11 @@ def from_table(
         The column that tells runs apart, each of which has its own length.
     units : dict
         Of components, or of their columns, ``"rad"``, ``"deg"``, ``"mgon"`` or ``"arcsec"``, which make it an angle, or
-        ``"m"``, ``"mm"``, ``"cm"`` or ``"km"``. The truth, sigma, variances and covariances are then in the same unit,
-        unless a column of `truth`, `sigma` or `variance` has one of its own, and what is returned is in rad and m. Of
-        `time`, and of `truth_time` where that of `truth_table` is another one, ``"s"``, ``"ms"``, ``"us"`` or ``"ns"``.
+        ``"m"``, ``"mm"``, ``"cm"`` or ``"km"``; or ``"latitude"`` and ``"longitude"`` (deg), whose errors and sigmas
+        are in m to the north and to the east, by pymap3d. The truth, sigma, variances and covariances are then in the
+        same unit, unless a column of `truth`, `sigma` or `variance` has one of its own, and what is returned is in rad
+        and m. Of `time`, and of `truth_time` where that of `truth_table` is another one, ``"s"``, ``"ms"``, ``"us"`` or
+        ``"ns"``.
     order : str, or list of str
         Of `covariance` and `innovation_covariance`: ``"upper"``, ``"lower"`` (both row by row), ``"diagonals"`` (the
         variances, then what is beside them) or ``"full"``; ``"rotation first"`` where angles come before the rest;
@@ -91,6 +95,9 @@ def from_table(
         that gives positive definite matrices.
     max_gap : float
         As of :func:`from_tum`.
+    **options
+        `pair`: `truth_table` is a second filter's, with the same names [from_pair]. Of poses, which are on
+        ``"R3 x SO3"`` by default, those of :func:`from_tum`; `order` may have ``"qw first"``.
 
     Returns
     -------
@@ -106,16 +113,28 @@ def from_table(
         If a column is not there or not of numbers, columns do not fit each other, a standard deviation is negative, a
         unit or order cannot be right, or no step can be judged.
     """
-    left_out = ("table", "truth_table", "map", "max_gap")
+    left_out = ("table", "truth_table", "map", "max_gap", "options")
     given = declared(map, {name: value for name, value in locals().items() if name not in left_out})
-    return _Reader(NamedColumns(table), given).arguments(truth_table, max_gap)
+    rows, other = NamedColumns(table), None if truth_table is None else NamedColumns(truth_table)
+    if options.get("pair") and "estimate" not in given:
+        raise wrong("pair", "two filters have estimates", "Name those")
+    if options.get("pair"):
+        given = {**given, "truth": given.get("truth", given.get("estimate", []))}
+    kinds, (count, wanted) = kinds_of(given), (len(given.get(name, [])) for name in ("truth", "estimate"))
+    if kinds[0] and count != wanted:
+        raise InputError(f"truth has {count} columns (must be {wanted}, as estimate). Give one for each.")
+    if "estimate" in given and has_poses(rows, given["estimate"]):
+        return table_of_poses(rows, other, given, kinds[0], {"max_gap": max_gap, **options})
+    for name in options.keys() - {"pair"}:
+        raise wrong(name, "says nothing about a table without a quaternion", "Leave it out")
+    return _Reader(rows, given, bool(options.get("pair"))).arguments(other, max_gap)
 
 
 class _Reader:
     """A table, and what its columns are."""
 
-    def __init__(self, rows: NamedColumns, given: Mapping[str, Any]) -> None:
-        self.rows, self.source, self.given = rows, rows.source, given
+    def __init__(self, rows: NamedColumns, given: Mapping[str, Any], pair: bool = False) -> None:
+        self.rows, self.source, self.given, self.pair = rows, rows.source, given, pair
         self.spreads = kinds_of(given)
         columns = [given.get("error") or given.get("estimate", []), given.get("innovation", [])]
         spreads = [given.get(name, []) for name in self.spreads]
@@ -127,7 +146,7 @@ class _Reader:
                 raise InputError(f"angles: {name} is no column of the errors or estimates. Give some of {some}.")
         kinds = {name: ["time"] for name in ("time", "truth_time", *given.get("time", []))}
         truths = given.get("truth", [])
-        kinds |= {name: ["angle", "length"] for name in (*own, *truths, *spreads[0], *spreads[1])}
+        kinds |= {name: ["angle", "length", "place"] for name in (*own, *truths, *spreads[0], *spreads[1])}
         self.units = units_given(given["units"], kinds)
         self.errors, self.innovations = (
             Components(of, labels if labels and is_named else of, angles, self.units, spread, truth)
@@ -138,7 +157,7 @@ class _Reader:
             say = f"If it is one, name it {argument('innovation')}: without a truth the verdict is on innovations"
             note(f"{self.source}: {like} is given as an error, and called like an innovation. {say}.")
 
-    def arguments(self, truth_table: Any, max_gap: float) -> dict[str, Any]:
+    def arguments(self, truth_table: NamedColumns | None, max_gap: float) -> dict[str, Any]:
         """What `from_table` returns."""
         steps: dict[str, Array] = {}
         if "time" in self.given:
@@ -181,49 +200,44 @@ class _Reader:
             name: [units[i] for i in kept] for name, units in components.known.items()
         }
 
-    def _spread(self, kind: str, components: Components) -> Array:
+    def _spread(self, kind: str, rows: NamedColumns) -> Array:
         """Variances [row, n], or covariances [row, n, n], in the units of the columns."""
-        columns, n = self.given[kind], len(components.names)
-        values, is_joint = self.rows.array(columns), kind.endswith("covariance")
-        if is_joint and len(columns) in (n * n, n * (n + 1) // 2):
-            return matrices_of(self.source, values, n, self.given.get("order", ()), components.turns)
-        if is_joint or len(columns) != n:
-            wanted = f"{n * n} or {n * (n + 1) // 2}" if is_joint else f"{n}, one for each component"
-            raise InputError(f"{kind} has {len(columns)} columns (must be {wanted}). Give one for each entry.")
-        if not kind.endswith("sigma"):
-            return values
-        require_positive(self.source, f"{kind} ({', '.join(columns)})", values)
-        return values**2
+        components = self.errors if kind == self.spreads[0] else self.innovations
+        order, n = self.given.get("order", ()), len(components.names)
+        return rows.spread(kind, self.given[kind], n, order, components.turns)
 
-    def _errors(self, steps: Mapping[str, Array], truth_table: Any, max_gap: float) -> dict[str, Array]:
+    def _errors(self, steps: Mapping[str, Array], other: NamedColumns | None, max_gap: float) -> dict[str, Array]:
         components = self.errors
-        own, kept, most = self.rows.array(components.columns), slice(None), 4 * np.pi
+        own, kept, most, of_truth = self.rows.array(components.columns), slice(None), 4 * np.pi, 0.0
         largest = largest_of(own)
         components.refuse_degrees(self.source, own)
         error = own / components.scale
         if "error" in self.given:
             most = 2 * np.pi  # two angles in a turn are at most a turn apart
         else:
-            kept, true, largest_truth = self._truth(steps, truth_table, max_gap)
-            largest, error = np.maximum(largest, largest_truth), error[kept] - true
+            kept, true, largest_truth, of_truth = self._truth(steps, other, max_gap)
+            largest, error = np.maximum(largest, largest_truth), components.apart(self.source, error[kept], true)
             self.left = {reason: rows[kept] for reason, rows in self.left.items()}
-        covariance = self._spread(self.spreads[0], components)[kept]
+        covariance = self._spread(self.spreads[0], self.rows)[kept] + of_truth
         none = np.asarray(np.isnan(np.hstack([own[kept], variances_of(covariance)])).all(axis=1))
         if 2 * none.sum() > len(none):  # of a filter that was not asked at each row
             self.left["have neither an estimate nor a covariance"] = none
         components.refuse_sigmas(self.source, error, covariance)
+        components.ask_about_scales(self.source, error, covariance, self.spreads[0])
         components.refuse_folded(self.source, error, largest, most)
         components.ask_about_turns(self.source, own[kept], error)
         states = {"error": components.wrapped(error), "covariance": components.scaled(covariance)}
         return {name: array[kept] for name, array in steps.items()} | states
 
-    def _truth(self, steps: Mapping[str, Array], truth_table: Any, max_gap: float) -> tuple[Any, Array, Array]:
-        """The rows that have a truth, their true values, and how large its numbers are."""
+    def _truth(
+        self, steps: Mapping[str, Array], other: NamedColumns | None, max_gap: float
+    ) -> tuple[Any, Array, Array, Any]:
+        """The rows that have a truth, their true values, how large its numbers are, and the spread of a second filter
+        in its place."""
         names, components, times = self.given["truth"], self.errors, steps.get("time")
-        if len(names) != len(components.names):
-            has = f"truth has {len(names)} columns (must be {len(components.names)}, as estimate)"
-            raise InputError(f"{has}. Give one for each.")
-        if truth_table is None:
+        if other is None:
+            if self.pair:
+                raise InputError("a pair has two tables. Give that of the second filter as the truth.")
             true = self.rows.array(names)
             missing: Rows = np.isnan(true)
             if empty := [name for name, none in zip(names, np.asarray(missing.all(axis=0))) if none]:
@@ -231,18 +245,20 @@ class _Reader:
             self.left["have no truth"] = np.asarray(missing.any(axis=1))
             components.refuse_degrees(self.source, true, of_truth=True)
             true /= components.truth_scale
-            return slice(None), true, largest_of(true)
+            return slice(None), true, largest_of(true), 0.0
         if times is None or "runs" in self.given:
-            raise InputError(
-                "cannot use a table of the truth (it needs time, and one run a table). Give the column of time."
-            )
-        other = NamedColumns(truth_table)
+            raise InputError(NEEDS_TIME)
         unit = self.units.get("truth_time", self._unit_of_time())
         stamps = other.times(self.given["time"], unit, "truth_time", not self.units)
-        of, values, largest = interpolated(other, names, stamps, components)
+        of, values, largest, at = interpolated(other, names, stamps, components)
         kept, before, after, share = neighbours(of, times, max_gap)
         say_matched(self.source, times, kept, other.source, of, max_gap)
-        return kept, values[before] + share[:, None] * (values[after] - values[before]), largest
+        spread: Any = 0.0
+        if self.pair:
+            say_independent(self.source, other.source)
+            both = self._spread(self.spreads[0], other)[at]
+            spread = both[before] + share.reshape(-1, *[1] * (both.ndim - 1)) * (both[after] - both[before])
+        return kept, values[before] + share[:, None] * (values[after] - values[before]), largest, spread
 
     def _innovations(self) -> dict[str, Array]:
         """Innovations and S. Where there are no errors, and no correlations either, they stand in the errors' place, so
@@ -250,7 +266,7 @@ class _Reader:
         components = self.innovations
         own = self.rows.array(components.columns)
         components.refuse_degrees(self.source, own)
-        values, S = own / components.scale, self._spread(self.spreads[1], components)
+        values, S = own / components.scale, self._spread(self.spreads[1], self.rows)
         components.refuse_sigmas(self.source, values, S)
         components.refuse_folded(self.source, values, largest_of(own), 2 * np.pi)
         values, S = components.wrapped(values), components.scaled(S)

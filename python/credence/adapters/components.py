@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from credence._errors import InputError, argument
 from credence._names import joined
 from credence.adapters.named_columns import NamedColumns
-from credence.adapters.tables import UNITS, Array, note
+from credence.adapters.tables import UNITS, Array, needed, note
 
 _turn = 2 * np.pi
+_like_degrees = re.compile(r"(^|[^a-z])(lat|lon|lng|latitude|longitude)([^a-z]|$)", re.IGNORECASE)
 
 
 class Components:
@@ -43,8 +46,10 @@ class Components:
             for each in (own, of_truth)
         )
         self.turns = [i for i, kind in enumerate(kinds) if kind == "angle"]
+        self.is_said = [bool(unit) for unit in given]
         self.doubtful = [i for i in self.turns if not given[i]]
         self.says_spread, self.says_truth = [bool(unit) for unit in own], [bool(unit) for unit in of_truth]
+        self.places = {unit: taken.index(unit) for unit in ("latitude", "longitude") if unit in taken}
         self.known = {"component_units": ["rad" if kind == "angle" else "m" for kind in kinds]}
         if not any(given) or "" in kinds:
             self.known = {}
@@ -52,6 +57,48 @@ class Components:
     def wrapped(self, differences: Array) -> Array:
         differences[:, self.turns] = np.remainder(differences[:, self.turns] + np.pi, _turn) - np.pi
         return differences
+
+    def apart(self, source: str, values: Array, truth: Array) -> Array:
+        """Estimates less truths; of latitudes and longitudes in m [geodesy]."""
+        error = values - truth
+        looks = [i for i, name in enumerate(self.columns) if _like_degrees.search(str(name))]
+        if len(looks) == 2 and not self.places and not any(self.is_said[i] for i in looks):
+            lat, lon = sorted(looks, key=lambda i: "lo" in (name := str(self.columns[i]).lower()) or "lng" in name)
+            if np.nanmax(np.abs(truth[:, lat])) <= 90 and np.nanmax(np.abs(truth[:, lon])) <= 180:
+                both = [self.names[lat], self.names[lon]]
+                say = [f"{joined([name])}={unit}" for name, unit in zip(both, ("latitude", "longitude"))]
+                has = f"{both[0]} and {both[1]} are called as degrees on the Earth, whose sigmas are in m"
+                no = shlex.quote(f"{joined(both[:1])}=m")
+                raise InputError(
+                    f"{source}: {has}. Say {argument('units')} {shlex.quote(','.join(say))}, or {no} if not."
+                )
+        if self.places:
+            i, j = (self.places.get(unit, -1) for unit in ("latitude", "longitude"))
+            if min(i, j) < 0:
+                raise InputError(f"{argument('units')}: there is one of latitude and longitude. Give both.")
+            earth = needed("pymap3d", "pymap3d", "place positions on the Earth")
+            zero = np.zeros(len(values))
+            east, north, _ = earth.geodetic2enu(values[:, i], values[:, j], zero, truth[:, i], truth[:, j], zero)
+            error[:, i], error[:, j] = north, east
+        return error
+
+    def ask_about_scales(self, source: str, errors: Array, covariance: Array, kind: str) -> None:
+        """Note sigmas, or variances, that are a power of ten of the errors' throughout, as of m beside mm; or the
+        squares or roots of their sizes, as of the other kind."""
+        if covariance.ndim > 2 or len(errors) < 20 or len(self.spread) != len(self.names):
+            return
+        sizes = 1.4826 * np.nanmedian(np.abs(errors), axis=0)
+        usual = np.sqrt(np.maximum(np.nanmedian(covariance, axis=0), 0))
+        plain = [i for i in range(len(sizes)) if i not in self.turns and sizes[i] > 0 and usual[i] > 0]
+        for ratio, unit, of_spread in ((1e3, "mm", "m"), (100.0, "cm", "m"), (1e-3, "m", "mm"), (0.01, "m", "cm")):
+            if plain and all(abs(sizes[i] / usual[i] / ratio - 1) < 0.15 and not self.is_said[i] for i in plain):
+                say = [f"{joined([self.names[i]])}={unit},{joined([self.spread[i]])}={of_spread}" for i in plain]
+                what = f"are {1 / ratio:.4g} times its errors. Are they in {of_spread}, and the errors in {unit}"
+                note(f"{source}: its {kind}s {what}? If so, say {argument('units')} {shlex.quote(','.join(say))}.")
+        other, power = ("variance", 0.5) if kind == "sigma" else ("sigma", 2)
+        is_other = all(0.85 < usual[i] ** power / sizes[i] < 1.15 for i in plain)
+        if len(plain) > 1 and is_other and not all(0.7 < usual[i] / sizes[i] < 1.4 for i in plain):
+            note(f"{source}: its {kind}s are as large as {other}s of its errors. If they are, name them {other}.")
 
     def scaled(self, covariances: Array) -> Array:
         """Variances [row, n] or covariances [row, n, n] in rad² and m²."""
@@ -140,8 +187,8 @@ def largest_of(columns: Array) -> Array:
 
 def interpolated(
     table: NamedColumns, names: Sequence[str], times: Array, components: Components
-) -> tuple[Array, Array, Array]:
-    """The times of the truth, in order, its values there, angles without jumps, and how large these were."""
+) -> tuple[Array, Array, Array, NDArray[np.intp]]:
+    """The times of the truth, in order, its values there, angles without jumps, how large these were, and its rows."""
     values = table.array(names)
     there = np.isfinite(np.c_[times, values]).all(axis=1)
     if not there.all():
@@ -156,4 +203,4 @@ def interpolated(
     components.refuse_folded(table.source, np.diff(values, axis=0), largest, is_error=False)
     for i in components.turns:
         values[:, i] = np.unwrap(values[:, i])
-    return times, values, largest
+    return times, values, largest, order

@@ -66,7 +66,7 @@ def _value(place: str, key: str, value: Any) -> Any:
             raise InputError(f"{place}invalid dimension={printable(whole)} (must be a whole number above 0). Give it.")
         return int(whole)
     if key == "order":
-        return words_of(value)
+        return words_of(value, "qw first")
     names = list(value) if isinstance(value, Iterable) and not isinstance(value, (str, Mapping)) else [value]
     wrong = [name for name in names if isinstance(name, (list, tuple, dict)) or name == ""]
     if wrong or (key in _single and len(names) > 1):

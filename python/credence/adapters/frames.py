@@ -150,15 +150,13 @@ def _sigmas(difference: float, block: Array) -> float:
     return difference / math.sqrt(largest) if largest > 0 else 0.0
 
 
-def check_frames(estimate: Poses, truth: Poses, kept: Sequence[int]) -> None:
-    """Notes frames of other names, and a first pose that is far from the truth."""
+def away(estimate: Poses, truth: Poses, kept: Sequence[int]) -> tuple[float, str]:
+    """How many sigmas, and how far, the first pose is from its truth."""
     assert estimate.covariance is not None
-    if estimate.frame and truth.frame and estimate.frame != truth.frame:
-        note(f"{estimate.source}: its poses are in the frame {estimate.frame}, those of the truth in {truth.frame}")
     places = [i for i in kept if i < 3]
-    away = float(np.linalg.norm((estimate.pose[0] - truth.pose[0])[places]))
-    sigmas = _sigmas(away, estimate.covariance[0][np.ix_(places, places)]) if places else 0.0
-    far = f"{away:.3g} m"
+    distance = float(np.linalg.norm((estimate.pose[0] - truth.pose[0])[places]))
+    sigmas = _sigmas(distance, estimate.covariance[0][np.ix_(places, places)]) if places else 0.0
+    far = f"{distance:.3g} m"
     turns = [i for i in kept if i >= 3]
     if turns:
         half = float(normalised(estimate.pose[0, 3:]) @ normalised(truth.pose[0, 3:]))
@@ -167,11 +165,40 @@ def check_frames(estimate: Poses, truth: Poses, kept: Sequence[int]) -> None:
             angle = abs(float(wrapped(yaw_of(estimate.pose[0]) - yaw_of(truth.pose[0]))))
         if (of_angle := _sigmas(angle, estimate.covariance[0][np.ix_(turns, turns)])) > sigmas:
             sigmas, far = of_angle, f"{angle:.3g} rad"
+    return sigmas, far
+
+
+def check_frames(runs: Sequence[tuple[Poses, Poses]], kept: Sequence[int]) -> None:
+    """Notes frames of other names, and first poses that are far from the truth: of all logs those of the farthest."""
+    sigmas, far, at = max((*away(estimate, truth, kept), -i) for i, (estimate, truth) in enumerate(runs))
+    estimate, truth = runs[-at]
+    if estimate.frame and truth.frame and estimate.frame != truth.frame:
+        note(f"{estimate.source}: its poses are in the frame {estimate.frame}, those of the truth in {truth.frame}")
     if sigmas > 5:
+        of = f", the farthest of {len(runs)} logs" if len(runs) > 1 else ""
+        say = f"{argument('align')} first-yaw of a filter that feels gravity, or first"
         note(
-            f"{estimate.source}: its first pose is {far} from the truth, {sigmas:.3g} sigmas. Are both in one frame? "
-            f"Nothing is aligned unless you ask for it ({argument('align')})."
+            f"{estimate.source}: its first pose is {far} from the truth, {sigmas:.3g} sigmas{of}. Are both in one "
+            f"frame? Nothing is aligned unless you ask for it ({say})."
         )
+
+
+def log_of(turns: Any, places: Array) -> Array:
+    """[step, 6]: Log of poses on SE(3), translation and rotation vector [Barfoot 2017, 7.1.3]."""
+    w = turns.as_rotvec()
+    angle = np.maximum(np.linalg.norm(w, axis=1), 1e-7)[:, None]
+    across = np.cross(w, places)
+    share = 1 / angle**2 - (1 + np.cos(angle)) / (2 * angle * np.sin(angle))
+    return np.hstack([places - across / 2 + share * np.cross(w, across), w])
+
+
+def errors_of(estimate: Array, truth: Array, manifold: str, chart: str) -> Array:
+    """[step, 6]: errors of poses [step, 7]."""
+    E, T, apart = rotation(estimate[:, 3:]), rotation(truth[:, 3:]), estimate[:, :3] - truth[:, :3]
+    turn = T.inv() * E if chart == "local" else E * T.inv()
+    if manifold != "SE3":
+        return np.hstack([apart, turn.as_rotvec()])
+    return log_of(turn, T.inv().apply(apart) if chart == "local" else estimate[:, :3] - turn.apply(truth[:, :3]))
 
 
 def wrapped(angle: Any) -> Any:

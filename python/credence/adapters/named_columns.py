@@ -12,7 +12,8 @@ import numpy as np
 
 from credence._arrays import numbers
 from credence._errors import InputError, printable
-from credence.adapters.tables import UNITS, Array, Path, needed, one_line, seconds, text_of
+from credence.adapters.orders import matrices_of
+from credence.adapters.tables import UNITS, Array, Path, needed, one_line, require_positive, seconds, text_of
 
 _week = 604_800.0  # s
 _week_and_seconds = r"\s*(\d{1,4})\s+(\d{1,6}(?:\.\d*)?)\s*"
@@ -106,6 +107,19 @@ class NamedColumns:
     def array(self, names: Sequence[str]) -> Array:
         """[row, n]"""
         return np.stack([self.column(name) for name in names], axis=-1)
+
+    def spread(self, kind: str, names: Sequence[str], n: int, order: Sequence[str], turns: Sequence[int]) -> Array:
+        """Variances [row, n], or covariances [row, n, n], of columns that are sigmas, variances or covariances."""
+        values, is_joint = self.array(names), kind.endswith("covariance")
+        if is_joint and len(names) in (n * n, n * (n + 1) // 2):
+            return matrices_of(self.source, values, n, order, turns)
+        if is_joint or len(names) != n:
+            wanted = f"{n * n} or {n * (n + 1) // 2}" if is_joint else f"{n}, one for each component"
+            raise InputError(f"{kind} has {len(names)} columns (must be {wanted}). Give one for each entry.")
+        if not kind.endswith("sigma"):
+            return values
+        require_positive(self.source, f"{kind} ({', '.join(names)})", values)
+        return values**2
 
     def times(self, names: Sequence[str], unit: str, name: str, noted: bool) -> Array:
         """Times (s) of a column of numbers in a unit, or of texts; two columns are week and seconds of GPS, or a date

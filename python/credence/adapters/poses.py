@@ -9,12 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from credence._errors import InputError, argument, invalid, wrong
+from credence.adapters.fits import ask_what_fits
 from credence.adapters.frames import (
     ALIGNMENTS,
     Poses,
     aligned,
     body_offset,
     check_frames,
+    errors_of,
     found_offset,
     from_vectors,
     rotation,
@@ -142,10 +144,12 @@ def _of_components(
 ) -> dict[str, Any]:
     """The arguments with the components that are kept."""
     names = {"component_names": [COMPONENTS[i] for i in kept], "component_units": [_units[i] for i in kept]}
-    arguments = names | {"covariance": covariance if len(kept) == 6 else covariance[..., kept, :][..., kept]}
+    covariance = covariance if len(kept) == 6 else covariance[..., kept, :][..., kept]
+    arguments: dict[str, Any] = names | {"covariance": covariance}
     states: dict[str, Any] = {"chart": chart}
     if kept == list(range(6)):
         names["component_names"][3:] = ["rx", "ry", "rz"]
+        arguments |= {"groups": {"position": [0, 1, 2], "rotation": [3, 4, 5]}}
         states |= {"truth": truth, "estimate": estimate, "manifold": manifold, "quaternion": "xyzw"}
     elif kept == _planar or max(kept) < 3:
         angles = [yaw_of(each)[..., None] for each in (truth, estimate)] if kept == _planar else [truth[..., :0]] * 2
@@ -159,10 +163,8 @@ def _of_components(
         raise InputError("cannot judge a part of SE3 (its components are not apart). Give manifold='R3 x SO3'.")
     else:
         there = ~np.isnan(truth[..., 0])
-        T, E = rotation(truth[there][:, 3:]), rotation(estimate[there][:, 3:])
-        turn = (T.inv() * E if chart == "local" else E * T.inv()).as_rotvec()
         error = np.full((*truth.shape[:-1], 6), np.nan)
-        error[there] = np.hstack([(estimate - truth)[there][:, :3], turn])
+        error[there] = errors_of(estimate[there], truth[there], manifold, chart)
         states = {"error": error[..., kept]}
     return arguments | states
 
@@ -255,17 +257,19 @@ def pose_arguments(
     if pair:
         runs = [(added(*run), run[1]) for run in runs]
         say_independent(runs[0][0].source, runs[0][1].source)
-    kept = _kept_components([estimate for estimate, _ in runs], planar)
+    kept, shifted = _kept_components([estimate for estimate, _ in runs], planar), False
     for (estimate, truth), (_, whole) in zip(runs, ordered):
         at, gain = found_offset(estimate, whole if align == "none" else truth)
-        if time_offset or gain < 0.5:
-            if align == "none":
-                check_frames(estimate, truth, kept)
-        else:  # which moves the first pose, too
+        if gain >= 0.5 and not time_offset:
+            shifted = True  # which moves the first pose, too
             note(
                 f"{estimate.source}: with {at:+.3g} s added to its times the squared errors of its positions "
                 f"would be {gain:.0%} smaller. Nothing is shifted unless you ask for it ({argument('time_offset')})."
             )
+    if align == "none" and not shifted and (
+        len(kept) < 6 or pair or not ask_what_fits(runs, manifold, chart, body is not None)
+    ):
+        check_frames(runs, kept)
     true, estimated = (_states(each) for each in ([truth for _, truth in runs], [estimate for estimate, _ in runs]))
     return {
         **_of_components(kept, true, estimated, stacked(_covariances(run for run, _ in runs)), manifold, chart),

@@ -32,6 +32,8 @@ UNITS = {
     "mm": ("length", 1e3),
     "cm": ("length", 1e2),
     "km": ("length", 1e-3),
+    "latitude": ("place", 1.0),  # degrees, of which errors are in m
+    "longitude": ("place", 1.0),
     "s": ("time", 1.0),
     "ms": ("time", 1e3),
     "us": ("time", 1e6),
