@@ -102,7 +102,7 @@ def names_of_a_device_in_options() -> Shape:
     names = {"x": "East (m)", "y": "North, m", "h": "heading"}
     words = """--names 'estimate=East (m),"North, m",heading' truth=gx,gy,gh sigma=sx,sy,sh --time t
         --components 'East (m),"North, m",yaw' --units '"North, m"=m,yaw=rad'"""
-    return Shape(plain(2).rename(columns=names), words, "in the report East_m is East .m., North_m is North, m$")
+    return Shape(plain(2).rename(columns=names), words, "in the report North_ m is North, m$")
 
 
 @shape
@@ -111,7 +111,7 @@ def rostopic_echo() -> Shape:
     table = plain(3, " ".join(names))
     table.insert(0, "%time", 1_700_000_000_000_000_000 + (1e9 * table.pop("t")).astype("int64"))
     words = f"--names estimate={','.join(names[:3])} truth={','.join(names[3:])} sigma=sx,sy,sh angles={names[2]}"
-    return Shape(table, words + " time=%time --units=%time=ns", "field_pose_pose_yaw is field.pose.pose.yaw")
+    return Shape(table, words + " time=%time --units=%time=ns")
 
 
 @shape

@@ -102,10 +102,10 @@ def looks_like_innovation(names: Sequence[str]) -> str | None:
 
 
 def record_names(labels: Sequence[str]) -> list[str]:
-    """Names as a record can have them, each another one."""
+    """Names as a record can have them, each another one: texts of one line without commas, quotes, / and =."""
     found: list[str] = []
     for label in labels:
-        name = re.sub(r"[^A-Za-z0-9_-]+", "_", str(label)).strip("_") or "x"
+        name = "".join(c if c.isprintable() and c not in ",/=\"'`\\" else "_" for c in str(label)).strip() or "x"
         name = name if name != "all" else "all_"
         taken = [f"{name}_{i}" if i > 1 else name for i in range(1, len(found) + 2)]
         found.append(next(each for each in taken if each not in found))

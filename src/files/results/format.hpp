@@ -112,6 +112,7 @@ inline hdf5::Dimension new_component_dimension(const hdf5::Handle& group, const 
     std::vector<std::string> names, units;
     for (const Component& component : components) {
         names.push_back(component.name);
+        std::replace(names.back().begin(), names.back().end(), ' ', '_');  // what parts the names
         units.push_back(component.unit);
     }
     hdf5::Dimension dimension = numbered<std::int32_t>(group, name, 0, names.size(), long_name);

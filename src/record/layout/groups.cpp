@@ -89,16 +89,16 @@ std::vector<std::string> read_list(const RecordSource& source, const std::string
 
 ComponentGroup group_of(const std::string& name, std::vector<int> members) {
     ComponentGroup group{name, members.front(), static_cast<int>(members.size())};
-    for (int i = 0; i < group.count; ++i)
-        if (members[static_cast<std::size_t>(i)] != group.first + i) {
-            group.components = std::move(members);
-            break;
-        }
+    if (std::ranges::adjacent_find(members, [](int i, int next) { return next != i + 1; }) != members.end())
+        group.components = std::move(members);
     return group;
 }
 
+/// The name of a component is what its owner calls it: any text of one line that a list, a path and an option can hold.
 void require_group_name(const std::string& name, const std::string& what, const std::string& place) {
-    if (!names_something(name))
+    const bool is_text = what == "component" && !name.empty() && printable(name, name.size()) == name &&
+                         name.find_first_of(",/=\"'`\\") == std::string::npos;
+    if (!is_text && !names_something(name))
         throw RecordError(place, quoted(name) + " is no name for a " + what, "Use letters, digits, _ and -");
     if (name == "all")
         throw RecordError(place, "`all` cannot name a " + what + ", because it stands for the whole",

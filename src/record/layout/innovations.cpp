@@ -58,9 +58,10 @@ public:
     }
     ListEntries list(const std::string& name) const override {
         if (name != "component_names") return record_.list(attribute(name));
-        ListEntries names;
-        for (std::uint64_t row = 0; row < record_.open("innovation")->extents().back(); ++row)
-            names.push_back({"row_" + std::to_string(row)});
+        const std::uint64_t rows = record_.open("innovation")->extents().back();
+        ListEntries names = record_.has_attribute(name) ? record_.list(name) : ListEntries();
+        if (names.size() != rows) names.clear();
+        while (names.size() < rows) names.push_back({"row_" + std::to_string(names.size())});
         return names;
     }
     std::optional<double> number(const std::string& name, const std::string&) const override {
