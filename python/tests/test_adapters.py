@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from datetime import datetime, timedelta
 from pathlib import Path
 from types import SimpleNamespace
@@ -48,6 +49,26 @@ class TestTum:
         information = np.linalg.inv(self.P)[0, 0]
         by_hand = [0.2**2 * information, 0.1**2 * information]
         assert nees(adapters.from_tum(estimates, truth)) == pytest.approx(by_hand, rel=1e-12)
+
+    def test_a_truth_that_bends_between_its_poses_is_noted(self, tmp_path: Path) -> None:
+        def circle(times: np.ndarray) -> np.ndarray:
+            still = np.zeros((len(times), 4))
+            return np.column_stack([times, np.cos(times), np.sin(times), still, np.ones(len(times))])
+
+        at = np.arange(0.5, 19.5, 0.1)
+        estimate = write(tmp_path / "run.txt", np.hstack([circle(at), np.tile(self.P.ravel(), (len(at), 1))]))
+        for rate, said in ((1, True), (100, False)):
+            times = np.arange(0, 20, 1 / rate)
+            truth = write(tmp_path / "truth.txt", circle(times))
+            with warnings.catch_warnings(record=True) as notes:
+                warnings.simplefilter("always")
+                error = adapters.from_tum(estimate, truth, max_gap=1.5)
+            of_P = np.linalg.norm((error["estimate"] - error["truth"])[0, :, :3], axis=1) / np.sqrt(0.063)
+            told = [str(one.message) for one in notes if "sigma of P by their bends" in str(one.message)]
+            assert len(told) == said, told
+            if said:
+                share = float(told[0].split(" straight lines miss ")[1].split()[0])
+                assert share == pytest.approx(np.median(of_P), rel=0.1)
 
     def test_the_world_s_frame(self, tmp_path: Path) -> None:
         estimates, truth = tum_pair(tmp_path, self.P.ravel())

@@ -30,6 +30,7 @@ from credence.adapters.tables import Array, neighbours, normalised, note, requir
 COMPONENTS = ["x", "y", "z", "roll", "pitch", "yaw"]
 _units = ["m"] * 3 + ["rad"] * 3
 _planar = [0, 1, 5]
+BENDS = 0.2  # share of P's sigma from which on an error of the truth shows
 
 
 def _require_times(estimate: Poses, truth: Poses) -> None:
@@ -95,6 +96,28 @@ def interpolated(truth: Poses, times: Array, max_gap: float) -> tuple[NDArray[np
     if covariance is not None:
         covariance = covariance[before] + share[..., None] * (covariance[after] - covariance[before])
     return found, truth._replace(time=times[found], pose=poses, covariance=covariance)
+
+
+def _say_bends(estimate: Poses, truth: Poses, times: Array, max_gap: float, places: Sequence[int]) -> None:
+    """Note where straight lines between true positions miss more of them than a fifth of P's sigma: the second
+    derivative times s (1 - s) / 2 of the gap squared, where s is the place within it."""
+    if len(truth.time) < 3 or not places:
+        return
+    _, before, after, share = neighbours(truth.time, times, max_gap)
+    position, gap = truth.pose[:, places], truth.time[after] - truth.time[before]
+    slopes = np.diff(position, axis=0) / np.diff(truth.time)[:, None]
+    bends = 2 * np.diff(slopes, axis=0) / (truth.time[2:] - truth.time[:-2])[:, None]
+    bends = np.pad(bends, ((1, 1), (0, 0)), mode="edge")
+    off = (share * (1 - share) * gap**2 / 2)[:, None] * (bends[before] + bends[after]) / 2
+    assert estimate.covariance is not None
+    variance = np.diagonal(estimate.covariance, axis1=1, axis2=2)[:, places].sum(axis=1)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        share_of_P = float(np.median(np.linalg.norm(off, axis=1) / np.sqrt(variance)))
+    if share_of_P > BENDS:
+        note(
+            f"{truth.source}: its positions, {np.median(gap):.2g} s apart, are interpolated, and straight lines miss "
+            f"{share_of_P:.2g} sigma of P by their bends (median): the errors have this in them. Give a denser truth"
+        )
 
 
 def _associated(estimate: Poses, truth: Poses, max_gap: float, time_offset: float) -> tuple[Poses, Poses]:
@@ -259,6 +282,7 @@ def pose_arguments(
         say_independent(runs[0][0].source, runs[0][1].source)
     kept, shifted = _kept_components([estimate for estimate, _ in runs], planar), False
     for (estimate, truth), (_, whole) in zip(runs, ordered):
+        _say_bends(estimate, whole, estimate.time + time_offset, max_gap, [i for i in kept if i < 3])
         at, gain = found_offset(estimate, whole if align == "none" else truth)
         if gain >= 0.5 and not time_offset:
             shifted = True  # which moves the first pose, too
