@@ -37,6 +37,7 @@ class Source(Protocol):
     objective: str
     trouble: str  # why the first trial without a result has none; empty if there was none
     progress: bool | None  # whether a bar is drawn of what is judged
+    has_truth: bool  # whether what is judged are errors, not innovations
 
     def scores(self, values: Values, count: int) -> Array:
         """The score of each of the first `count` trials [count], NaN of those without a result."""
@@ -73,6 +74,7 @@ class FunctionSource:
     def __init__(self, work: Work, objective: str, executor: Any) -> None:
         self.work, self.objective, self.executor, self.trouble = work, objective, executor, ""
         self.progress: bool | None = False
+        self.has_truth = True
         self._workers: Workers[list[int]] | None = None
         self._seconds = 0.0  # of one trial; 0 before any is done
 
@@ -143,7 +145,7 @@ class ScenarioSource:
             raise InputError("cannot run a program of your own on an executor (it has threads). Leave executor out.")
         self.scenario, self.objective, self.seed, self.trouble = scenario, objective, seed, ""
         self.progress: bool | None = False
-        self.executor, self.arm, self.own_program = executor, arm, program
+        self.executor, self.arm, self.own_program, self.has_truth = executor, arm, program, True
 
     def shown(self, values: Values) -> dict[str, str]:
         """{key: its text} of the scenario as resolved; InputError where a value is refused."""
@@ -228,6 +230,7 @@ class LogSource:
         self.progress: bool | None = False
         arrays, texts = self._arrays(start)
         steps = len(step_scores(objective, arrays))
+        self.has_truth = bool({"error", "estimate"} & arrays.keys())
         self.first = steps // 2 if held_out is None else steps - held_out
         if self.first < 2:
             raise invalid("held_out", held_out, f"the log has {steps} steps", "Leave some to tune on")
@@ -254,7 +257,7 @@ class LogSource:
         part: dict[str, Any] = {
             name: array[steps][None] for name, array in arrays.items() if np.ndim(array) > 0 and "/" not in name
         }
-        if "error" not in part:
+        if not self.has_truth:
             return judge(part["innovation"], part["innovation_covariance"], progress=False)
         return judge(**part, **texts, progress=False)
 

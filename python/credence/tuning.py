@@ -24,10 +24,11 @@ from credence import Failure, InputError
 from credence import _doors as doors
 from credence._calls import note
 from credence._errors import invalid, printable, wrong
-from credence._scores import OBJECTIVES
+from credence._scores import OBJECTIVES, judged_score
 from credence._trials import Array, Work
-from credence._tune_search import FAILED, Known, Objective, Space, known, search
-from credence._tune_sources import FunctionSource, LogSource, ScenarioSource, Source, held_out_seed
+from credence._tune_known import Known, known
+from credence._tune_search import FAILED, Objective, Space, search
+from credence._tune_sources import FEW_SEGMENTS, FunctionSource, LogSource, ScenarioSource, Source, held_out_seed
 from credence.judging import NOT_REFUTED, Verdict
 from credence.program import SEED
 from credence.simulating import batch_size
@@ -54,19 +55,44 @@ NAMES = {
 
 def _shown(value: float, error: float) -> str:
     """A number with as many digits as two of its error need; without an error four."""
-    if not (math.isfinite(error) and error > 0):
-        return f"{value:.4g}"
-    digits = max(0, 1 - math.floor(math.log10(error)))
-    return f"{value:.{digits}f} ± {error:.{digits}f}"
+    return f"{_rounded(value, error)} ± {_rounded(error, error)}" if 0 < error < math.inf else f"{value:.4g}"
 
 
-class Estimate(NamedTuple):
-    """A parameter and its standard error: infinite where the score does not see it, NaN at a bound."""
+def _rounded(value: float, error: float) -> str:
+    return f"{value:.{max(0, 1 - math.floor(math.log10(error)))}f}"
 
+
+def _ends(low: float, high: float) -> str:
+    half = (high - low) / 2
+    return f"{_rounded(low, half)} to {_rounded(high, half)}" if 0 < half < math.inf else "-"
+
+
+class _Pair(NamedTuple):
     value: float
     se: float
 
+
+class Estimate(_Pair):
+    """A parameter and its standard error: infinite where the score does not see it, NaN where there is none.
+
+    Attributes
+    ----------
+    interval : pair of float
+        Where it is at 95 %, by Student's t of the trials or segments: infinite where a bound is not excluded, NaN at a
+        bound beyond which the best may lie, and where the score jumps about its best.
+    """
+
+    interval: tuple[float, float]
+
+    def __new__(cls, value: float, se: float, interval: tuple[float, float] = (math.nan, math.nan)) -> Estimate:
+        made = super().__new__(cls, value, se)
+        made.interval = interval
+        return made
+
     def __str__(self) -> str:
+        low, high = self.interval
+        if math.isinf(low) != math.isinf(high):
+            return f"below {high:.3g}" if math.isinf(low) else f"above {low:.3g}"
         return _shown(self.value, self.se)
 
 
@@ -84,7 +110,8 @@ class Tuned:
     Attributes
     ----------
     parameters : dict of Estimate
-        {name: (value, se)}. The standard error is that of the parameter itself, by the sandwich of per-trial scores.
+        {name: (value, se)}, each with an ``interval``. The standard error is that of the parameter itself, by the
+        sandwich of per-trial scores.
     start : dict of float
         The parameters before.
     score_before, score_after : float
@@ -116,7 +143,10 @@ class Tuned:
     ) -> None:
         space = objective.space
         values, errors = space.values(w), facts.error * space.slope(w)
-        self.parameters = {each: Estimate(values[each], float(error)) for each, error in zip(space.names, errors)}
+        ends = np.array([list(space.values(end).values()) for end in facts.interval.T]).T
+        ends = np.where(np.isinf(facts.interval), facts.interval, ends)
+        self.parameters = {name: Estimate(values[name], float(error), (float(low), float(high)))
+                           for name, error, (low, high) in zip(space.names, errors, ends)}  # fmt: skip
         self.start, self.score_before, self.verdict_before = before
         self.score_after, self.verdict = after
         self.gains, self.at_bounds, self.evaluations = gains, facts.bounds, objective.evaluations
@@ -231,7 +261,7 @@ class Tuned:
 
         tried, rises = self.searched()
         drawn = [
-            Parameter(name, self.start[name], *found, self.is_log(name), self.parabola(name), tried[name])
+            Parameter(name, self.start[name], found, self.is_log(name), self.parabola(name), tried[name])
             for name, found in self.parameters.items()
         ]
         said = ", ".join(f"{name} {found}" for name, found in self.parameters.items())
@@ -288,30 +318,52 @@ def _direction(space: Space, v: Mapping[str, float]) -> str:
 
 
 def _said(tuned: Tuned) -> list[str]:
-    objective, space = tuned._objective, tuned._objective.space
-    count = len(space.names)
+    source, count = tuned._objective.source, len(tuned.parameters)
     lines = [
-        f"{tuned.name}: {count} parameter{'s' * (count > 1)} by {NAMES[objective.source.objective]}, lower is better;",
+        f"{tuned.name}: {count} parameter{'s' * (count > 1)} by {NAMES[source.objective]}, lower is better;",
         f"{tuned.evaluations} evaluations of {tuned.tuned_on}",
         "",
     ]
-    rows = [["parameter", "start", "tuned ± standard error", "put back, the score rises by"]]
-    for name, estimate in tuned.parameters.items():
-        rows.append([name, f"{tuned.start[name]:.4g}", str(estimate), f"{tuned.gains[name]:.3g}"])
+    rows = [["parameter", "start", "tuned ± standard error", "95 %", "put back, the score rises by"]]
+    for name, found in tuned.parameters.items():
+        rows.append([name, f"{tuned.start[name]:.4g}", str(found), _ends(*found.interval), f"{tuned.gains[name]:.3g}"])
     lines += [*_table(rows), "", f"On {tuned.held_out}:"]
     heads, after = _side_cells(tuned.verdict)
     was = tuned.verdict_before
     before = ["no result", *[""] * (len(heads) - 1)] if was is None else _side_cells(was)[1]
     lines += _table([["", *heads], ["before", *before], ["after", *after]])
-    if objective.source.objective == "innovations":
-        lines.append(f"  log score of the innovations: {tuned.score_before:.4g} before, {tuned.score_after:.4g} after")
-    notes = [f"{name} is at its {end} bound: the best may lie beyond it." for name, end in tuned.at_bounds.items()]
+    if source.objective == "innovations":
+        scores = {"innovations": [tuned.score_before, tuned.score_after]}
+        if source.has_truth:
+            sides = (tuned.verdict_before, tuned.verdict)
+            scores["errors"] = [math.nan if one is None else judged_score("errors", one) for one in sides]
+        for of, (first, last) in scores.items():
+            lines.append(f"  log score of the {of}: {first:.4g} before, {last:.4g} after")
+    notes = _notes(tuned)
+    return lines + (["", *notes] if notes else [])
+
+
+def _notes(tuned: Tuned) -> list[str]:
+    """What cannot be told, and what else a reader must know."""
+    objective, space, source = tuned._objective, tuned._objective.space, tuned._objective.source
+    notes = [f"{name} is at its {end} bound: the best may lie beyond it." for name, end in tuned.at_bounds.items()
+             if math.isnan(tuned.parameters[name].interval[0])]  # fmt: skip
+    for j, place in tuned._facts.instead.items():
+        found = space.values(place)
+        moved = np.abs(place - tuned._w) > np.where(space.is_log, 0.1, 0.01)
+        instead = [f"{name} {found[name]:.4g}" for i, name in enumerate(space.names) if moved[i] and i != j]
+        told = f"{space.names[j]} may be at its bound, {found[space.names[j]]:.4g}"
+        notes.append(f"{told}{', with ' if instead else ''}{' and '.join(instead)}.")
+    for j in tuned._facts.jumping:
+        notes.append(f"The score jumps along {space.names[j]}, or is no parabola about its best: no standard error.")
     for v in tuned.unidentified:
         told = _direction(space, v)
         both = f"The score does not tell {told} from what was tuned: fix one of these"
         notes.append(f"{both}, or measure more." if " with " in told else f"The score does not see {told.split()[0]}.")
+    if isinstance(source, LogSource) and source.segments < FEW_SEGMENTS:
+        notes.append(_few_segments(source.segments, tuned._facts.critical))
     if tuned._failing:
-        first = (objective.source.trouble or "its numbers are not finite").splitlines()[0]
+        first = (source.trouble or "its numbers are not finite").splitlines()[0]
         notes.append(f"{tuned._failing} points that were tried had no result, the first: {first}")
     scores = objective.scores(tuned._w)
     distinct = len(np.unique(scores))
@@ -321,11 +373,16 @@ def _said(tuned: Tuned) -> list[str]:
     if tuned.score_after > tuned.score_before:
         notes.append("On what was held out the score is no better than before: tune on more, or keep the start.")
     if tuned.verdict.verdict not in NOT_REFUTED:
-        if objective.source.objective != "nees":
+        if source.objective != "nees":
             cause = "what is left has another cause, such as linearisation, a missing state or a bias"
             notes.append(f"The best of these parameters do not make the filter right: {cause}.")
         notes += [f"left: {finding.text}" for finding in tuned.verdict.findings[:4]]
-    return lines + (["", *notes] if notes else [])
+    return notes
+
+
+def _few_segments(count: int, critical: float) -> str:
+    told = f"Only {count} segments, fewer than {FEW_SEGMENTS}: 95 % are {critical:.2g} standard errors"
+    return f"{told}, which are themselves not known well. Tune on a longer log."
 
 
 def _refuse_old_scipy() -> None:
@@ -554,6 +611,8 @@ def _tuned(
     with objective.shown(progress):
         w = search(objective, begin)
         facts = known(objective, w)
+        if isinstance(source, LogSource) and source.segments < FEW_SEGMENTS:
+            note(_few_segments(source.segments, facts.critical))
         gains = {}
         for j, each in enumerate(space.names):
             back = w.copy()

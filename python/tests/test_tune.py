@@ -104,6 +104,8 @@ def test_the_best_and_its_error_are_those_of_the_closed_form(best):
     assert best.verdict["trials"] == 400
     assert best.gains["s"] > 0
     assert str(best.parameters["s"]) == f"{value:.3f} ± {se:.3f}"
+    half = stats.t.ppf(0.975, N - 1) * se / value  # of the logarithm
+    assert best.parameters["s"].interval == pytest.approx((value * math.exp(-half), value * math.exp(half)))
     assert "On 400 other trials (seed 2):" in str(best)
 
 
@@ -111,6 +113,8 @@ def test_innovations_need_no_truth():
     found = tuned(objective="innovations")
     assert found.parameters["s"].value == pytest.approx(rms(which=1), rel=1e-4)
     assert found.score_after < found.score_before
+    before, after = (one.log_score["mean"] for one in (found.verdict_before, found.verdict))
+    assert f"log score of the errors: {before:.4g} before, {after:.4g} after" in str(found)
 
 
 def test_the_custom_of_the_field_is_warned_of():
@@ -129,6 +133,41 @@ def test_directions_that_the_score_does_not_see_are_named():
     assert all(math.isinf(one.se) for one in found.parameters.values())
     assert "does not tell" in str(found)
     assert "with" in str(found).split("does not tell")[1]
+
+
+def limit():
+    """The variance up to which that of the trials is not excluded, by Student's t: a closed form."""
+    each = [SIGMA**2 * np.mean(credence.simulating.generator(1, i).standard_normal((2, K, 1))[0] ** 2)
+            for i in range(FEW)]  # fmt: skip
+    return float(stats.t.interval(0.95, FEW - 1, np.mean(each), stats.sem(each))[1])
+
+
+@pytest.mark.parametrize("low", [0.0, 0.001])
+def test_a_truth_at_zero_has_an_upper_limit(low):
+    found = credence.tune(lambda rng, r=1.0: normal(rng, math.hypot(SIGMA, r)), free={"r": (low, 10)},
+                          trials=FEW, held_out=40)  # fmt: skip
+    expected = 1.05 * math.sqrt(limit() - SIGMA**2)  # to a tenth
+    assert found.parameters["r"].interval == pytest.approx((-math.inf, expected), rel=0.05)
+    assert math.isnan(found.parameters["r"].se)
+    assert f"  below {found.parameters['r'].interval[1]:.3g}  " in str(found)
+    assert f"r may be at its bound, {low:g}." in str(found)
+    assert "does not see" not in str(found)
+
+
+def test_what_only_counts_by_its_square_beside_another_has_an_upper_limit():
+    free = {"a": (0.01, 10), "b": (0.01, 10)}
+    found = credence.tune(lambda rng, a=0.3, b=0.3: normal(rng, math.hypot(a, b)), free=free, trials=FEW, held_out=40)
+    for one in found.parameters.values():
+        assert one.interval == pytest.approx((-math.inf, 1.05 * math.sqrt(limit())), rel=0.05)
+    assert "a may be at its bound, 0.01, with b 1.9" in str(found)
+
+
+@pytest.mark.parametrize("used", [lambda s: round(5 * s) / 5, lambda s: s * (1 + 0.05 * (int(20 * s) % 2))])
+def test_a_score_that_jumps_gives_no_standard_error(used):
+    found = credence.tune(lambda rng, s=1.0: normal(rng, used(s)), free={"s": (0.5, 50)}, trials=FEW, held_out=40)
+    assert found.unidentified == []
+    assert math.isnan(found.parameters["s"].se)
+    assert "The score jumps along s" in str(found)
 
 
 def test_a_parameter_that_is_not_used_is_named():
@@ -226,6 +265,20 @@ def test_a_log_is_tuned_on_its_first_steps():
     assert whole.verdict["segments"]["count"] > 100
 
 
+def test_a_log_of_few_segments_warns_and_takes_students_t():
+    rng = np.random.default_rng(7)
+    error = np.convolve(rng.standard_normal(600), 0.95 ** np.arange(200))[:600, None]
+    with pytest.warns(UserWarning, match="segments, fewer than 20: 95 % are"):
+        found = credence.tune(lambda s: credence.Run(error, np.full((600, 1, 1), s**2)), free={"s": (0.01, 1000)})
+    count = found._objective.source.segments
+    assert 2 < count < 20
+    value, se = found.parameters["s"]
+    assert math.log(found.parameters["s"].interval[1] / value) == pytest.approx(
+        stats.t.ppf(0.975, count - 1) * se / value
+    )
+    assert f"Only {count} segments, fewer than 20" in str(found)
+
+
 def test_a_log_without_truth():
     nu = SIGMA * np.random.default_rng(6).standard_normal((2000, 2))
 
@@ -234,6 +287,7 @@ def test_a_log_without_truth():
 
     found = credence.tune(log, free={"s": (0.1, 10)}, objective="innovations")
     assert found.parameters["s"].value == pytest.approx(np.sqrt(np.mean(nu[:1000] ** 2)), rel=1e-4)
+    assert "score of the errors" not in str(found)
     assert "has no error beside a covariance" in refusal(credence.tune, log, free={"s": (0.1, 10)})
 
 

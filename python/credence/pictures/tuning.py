@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,6 +16,9 @@ from .._file import FloatArray
 from . import style
 from .style import Picture
 
+if TYPE_CHECKING:
+    from ..tuning import Estimate
+
 
 @dataclass(frozen=True)
 class Parameter:
@@ -23,8 +27,7 @@ class Parameter:
 
     name: str
     start: float
-    best: float
-    error: float
+    found: Estimate
     is_log: bool
     curve: tuple[FloatArray, FloatArray]
     tried: FloatArray  # [point], its values where the search was
@@ -45,8 +48,7 @@ def picture(parameters: Sequence[Parameter], rises: FloatArray, message: str, so
     if len(parameters) == 2:
         _map(axes[-1], parameters[0], parameters[1], rises)
         where = "; right: where the search was, from the start (x) to the best (+)"
-    drawn.title(message, f"{source}; dots: what the search evaluated; lines: to second order; grey: two standard "
-                f"errors{where}")
+    drawn.title(message, f"{source}; dots: what the search evaluated; lines: to second order; grey: 95 %{where}")
     drawn.fit_labels()
     return drawn
 
@@ -61,12 +63,14 @@ def _scale(axis: Axes, x: str, parameter: Parameter, values: FloatArray) -> None
 
 def _profile(axis: Axes, of: Parameter, rises: FloatArray) -> None:
     values, scores = of.curve
+    ends = np.clip(of.found.interval, of.tried.min(), of.tried.max())
+    if np.isfinite(ends).all():
+        axis.axvspan(*ends, color=style.BAND, zorder=0)
     if len(values):
-        axis.axvspan(of.best - 2 * of.error, of.best + 2 * of.error, color=style.BAND, zorder=0)
         axis.plot(values, scores, **style.arm_style(0))
         axis.set(xlim=(values.min(), values.max()), ylim=(0, 1.3 * scores.max()))
     axis.plot(of.tried, rises, linestyle="none", marker=".", color=style.BLUE)
-    axis.axvline(of.best, color=style.GREY, linewidth=0.6)
+    axis.axvline(of.found.value, color=style.GREY, linewidth=0.6)
     _scale(axis, "x", of, values if len(values) else of.tried)
     axis.ticklabel_format(axis="y", useOffset=False)
 
@@ -79,6 +83,6 @@ def _map(axis: Axes, first: Parameter, second: Parameter, rises: FloatArray) -> 
     drawn = axis.scatter(x, y, c=np.maximum(rises[order], least), s=9, norm=LogNorm(), cmap="viridis", linewidths=0)
     axis.figure.colorbar(drawn, ax=axis, label="rise of the score")
     axis.plot(first.start, second.start, marker="x", color=style.VERMILION, markersize=6)
-    axis.plot(first.best, second.best, marker="+", color=style.VERMILION, markersize=8)
+    axis.plot(first.found.value, second.found.value, marker="+", color=style.VERMILION, markersize=8)
     _scale(axis, "x", first, x)
     _scale(axis, "y", second, y)
