@@ -638,18 +638,27 @@ def accepted_innovations_only() -> Shape:
     return Shape(arrays, answer="undecided", ends=".npz", hints="did a gate remove them")
 
 
-@shape
-def innovations_with_q_too_small() -> Shape:
-    """Of a random walk with steps of variance 0.1, measured with variance 1, for which the filter takes 0.002."""
+def innovations_of(q: float, r: float, answer: str) -> Shape:
+    """Of a random walk with steps of variance 0.1, measured with variance 1, for which the filter takes q and r."""
     rng = np.random.default_rng(86)
     z = np.cumsum(rng.normal(0, np.sqrt(0.1), 2 * STEPS)) + rng.normal(size=2 * STEPS)
     x, P, rows = 0.0, 1.0, []
     for one in z:
-        P += 0.002
-        rows.append((one - x, P + 1))
-        x, P = x + P / (P + 1) * (one - x), P / (P + 1)
+        P += q
+        rows.append((one - x, P + r))
+        x, P = x + P / (P + r) * (one - x), P * r / (P + r)
     table = pd.DataFrame(rows, columns=["innov", "S"])
-    return Shape(table, "--names innovation=innov innovation_variance=S", answer="optimistic")
+    return Shape(table, "--names innovation=innov innovation_variance=S", answer=answer)
+
+
+@shape
+def innovations_with_q_too_small() -> Shape:
+    return innovations_of(0.002, 1, "optimistic")
+
+
+@shape
+def innovations_with_r_too_large() -> Shape:
+    return innovations_of(0.1, 9, "mixed")
 
 
 def of_arcs(arcs: int, steps: int) -> Shape:

@@ -113,6 +113,7 @@ void Judgement::add(Side side, Finding finding) {
 
 void Judgement::add_correlation(Finding finding) {
     (finding.value > 0 ? above_ : below_) = true;
+    below_ |= too_small_withheld_;
     findings_.push_back(std::move(finding));
 }
 
