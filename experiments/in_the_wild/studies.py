@@ -9,9 +9,10 @@ from common import Filter, Study, halved, in_world_frame, of_half_angles, withou
 
 INCREMENT = {"chart": "increment"}
 SIMULATED = {"noise": "simulated"}
-ONE_FACTOR = "every direction is off by a factor of about"
+ONE_FACTOR = "P is too small by a factor of about"
 DIRECTIONS = "pessimistic (directions): all"
-OTHER_CHART = "their directions are wrong: is the error in the chart and frame of P, and is a correlation missing"
+DROPPED = "that they are not correlated"
+OTHER_CHART = "their directions are wrong: is the error in the chart and frame and of the step of P, and is a correlation missing"
 
 
 def radar(kind: str) -> Study:
@@ -32,7 +33,7 @@ def tutorial(number: int, kind: str) -> Study:
     return Study("Stone Soup", f"tutorial {number}, {kind.upper()}", "stonesoup_tutorials", 1000, 200, (
         Filter("as documented, from a known state", "pessimistic", {"kind": kind}),
         Filter("the truth drawn from the prior", "consistent", {"kind": kind, "start": "drawn"}),
-        Filter("wrong: variances alone", "mixed", {"kind": kind, "start": "drawn"}, without_correlations, OTHER_CHART,
+        Filter("wrong: variances alone", "mixed", {"kind": kind, "start": "drawn"}, without_correlations, DROPPED,
                says_short=DIRECTIONS),
     ))
 
@@ -40,7 +41,7 @@ def tutorial(number: int, kind: str) -> Study:
 STUDIES = (
     Study("GTSAM", "planar SLAM", "gtsam_planar_slam", 4000, 2000, (
         Filter("as documented, joint marginals", "consistent"),
-        Filter("wrong: marginals put together, without correlations", "mixed", {}, without_correlations, OTHER_CHART),
+        Filter("wrong: marginals put together, without correlations", "mixed", {}, without_correlations, DROPPED),
     )),
     Study("GTSAM", "iSAM2 with a loop closure", "gtsam_isam2", 4000, 2000, (
         Filter("as documented, P of gtsam.Marginals", "consistent"),

@@ -156,6 +156,8 @@ struct Consistency {
     DirectionsFound directions;
     Reached reached;
     std::vector<std::string> hints;    ///< what such findings often come from
+    bool withheld = false;             ///< P is larger than the errors of runs that are too few to find it so
+    bool mix_up = false;               ///< a hint says that P or the errors were written wrongly
     bool chart_doubted = false;        ///< a hint says that the errors may be in another chart than P
     std::vector<std::string> reasons;  ///< undecided only: what could not be shown, and why
     std::optional<Attribution> attribution;  ///< of trials of a record, where something is too large
@@ -165,6 +167,9 @@ struct Consistency {
     std::vector<Suspicion> suspicions; ///< undecided only
     std::vector<TruthFactor> truth;    ///< by group; empty without R
     std::vector<TurningPoint> turning_points;  ///< by unit; empty with R
+
+    /// Whether causes are looked for.
+    bool looks_wrong() const { return withheld || !findings.empty(); }
 };
 
 /// Student's 95 % interval of NEES/dimension, averaged over the steps.

@@ -5,6 +5,7 @@
 #include <credence/detail/credibility.hpp>
 #include <credence/detail/results.hpp>
 #include <credence/statistics.hpp>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -166,6 +167,8 @@ struct SegmentEvidence {
 };
 
 struct TruthEvidence;
+/// Steps to which causes are applied [src/verdict/applied.hpp].
+struct SampledSteps;
 
 struct Evidence {
     std::int64_t trials = 0;                   ///< over which the evidence is computed
@@ -193,6 +196,7 @@ struct Evidence {
     SegmentEvidence segments;
     /// With the covariance R of the truth's own errors; null without it.
     std::shared_ptr<const TruthEvidence> truth;
+    std::function<SampledSteps(const std::vector<int>& components)> sample{};  ///< Record::sample
     bool joint = true;                         ///< false: of a record without a covariance of the whole state
     /// Means and series of all finite trials, where diverged ones are left out; else null.
     std::shared_ptr<const Evidence> of_finite;

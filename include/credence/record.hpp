@@ -111,6 +111,8 @@ struct Record {
     /// their run where there are fewer than `runs_that_tell`, the smallest s at which NEES/dimension is at most each of
     /// these. Empty with `truth`.
     std::function<std::vector<double>(const std::vector<int>& members, const std::vector<double>& nees)> truth_sigmas{};
+    /// Reads the record again: some of its steps, with those components. Empty without P.
+    std::function<SampledSteps(const std::vector<int>& components)> sample{};
     /// Each reads the record again, with its errors in another chart: the other of `local` and `global`, then, of
     /// poses, `plain`, the differences of positions in the world's frame. Empty where charts do not differ.
     std::vector<std::function<Record()>> in_other_charts{};

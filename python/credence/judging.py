@@ -32,8 +32,8 @@ def tune_hint(run: str = "run", free: str = "{...}", start: str = "") -> str:
 class Verdict(Printed):
     """The verdict on a filter, with everything that it rests on.
 
-    ``str(verdict)`` is the text that ``credence judge`` prints, and below it, if the filter is refuted, the call that
-    says what to change; a notebook shows its page. ``verdict[name]`` is an entry of `json`, such as
+    ``str(verdict)`` is the text that ``credence judge`` prints, and below it, if the filter is refuted by more than
+    what was written of it, the call that says what to change; a notebook shows its page. ``verdict[name]`` is an entry of `json`, such as
     ``verdict["groups"]``.
 
     Attributes
@@ -52,7 +52,7 @@ class Verdict(Printed):
         return self.json[0][name]
 
     def __str__(self) -> str:
-        return super().__str__() + (f"{tune_hint()}\n" if self.verdict in REFUTED else "")
+        return super().__str__() + (f"{tune_hint()}\n" if self.is_of_the_filter else "")
 
     def __repr__(self) -> str:
         return f"<credence.Verdict {self.verdict}>"
@@ -61,6 +61,11 @@ class Verdict(Printed):
     def is_consistent(self) -> bool:
         """Whether the verdict is ``consistent``."""
         return self.verdict == "consistent"
+
+    @property
+    def is_of_the_filter(self) -> bool:
+        """Whether the filter is refuted, and not by what was written of it, such as degrees beside rad."""
+        return self.verdict in REFUTED and not self["mix_up"]
 
     @property
     def findings(self) -> list[Finding]:

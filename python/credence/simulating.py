@@ -36,7 +36,7 @@ from credence._results import Results, Sources, cached
 from credence._trial_files import Trials, get_text, write_records
 from credence._trials import BATCH, Arms, Array, Failure, Frame, Work, generator, is_frame, run_chunk, same
 from credence._workers import TRIES, Workers
-from credence.judging import REFUTED, Verdict, judge, tune_hint
+from credence.judging import Verdict, judge, tune_hint
 from credence.program import SEED, Interrupted, report
 
 if TYPE_CHECKING:
@@ -367,7 +367,7 @@ class Simulation(Results):
             where = f"the first: trial {first.trial} of {first.arm}"
             lines.append(f"\n{len(self.failures)} without a result, {where}: {first.reason}")
             lines += [first.traceback.rstrip("\n")] if first.traceback else []
-        refuted = [name for name, verdict in self.verdicts.items() if verdict.verdict in REFUTED]
+        refuted = [name for name, verdict in self.verdicts.items() if verdict.is_of_the_filter]
         if refuted:
             lines.append(_tune_hint(self._work.run, self._work.arms, refuted[0]))
         return "\n".join(lines) + "\n"

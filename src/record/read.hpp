@@ -2,6 +2,7 @@
 // Reading a record from any source.
 
 #include "record/reader.hpp"
+#include "verdict/applied.hpp"
 
 #include <functional>
 #include <string>
@@ -38,6 +39,10 @@ Record read_record(RecordReader reader, const std::string& name, const ReportPro
 
 /// The evidence with the covariance of the truth's errors, beside a record that was read without it.
 std::shared_ptr<const TruthEvidence> truth_evidence(RecordReader& reader, const std::string& name, int segments);
+
+/// Record::sample: of the trials that are `counted`, by their segments.
+SampledSteps sampled_steps(const RecordReader& reader, const std::vector<int>& components,
+                           const std::vector<char>& counted, const SegmentEvidence& segments);
 
 /// Record::truth_sigmas
 std::vector<double> truth_sigmas(const RecordReader& reader, const std::vector<int>& components,

@@ -83,13 +83,25 @@ Record read_record(RecordReader reader, const std::string& name, const ReportPro
         });
     std::vector<char> counted;
     const ArmResults& arm = record.results.arms.front();
-    for (const double status : arm.columns.in_memory()[status_column(record.results.columns)])
+    const std::vector<double>& statuses = arm.columns.in_memory()[status_column(record.results.columns)];
+    for (const double status : statuses)
         counted.push_back(counts(static_cast<Status>(static_cast<int>(status))));
     if (std::ranges::count(counted, 1) >= least_segments && has_step_means(reader.shape()))
         record.about_means = [=] {
             AboutMeans about;
             open_again([&](const RecordReader& again) { about = read_about_means(again, name, counted); });
             return about;
+        };
+    std::vector<char> judged = counted;
+    for (std::size_t i = 0; arm.totals.trials.diverged_count && i < judged.size(); ++i)
+        judged[i] = !failed(static_cast<Status>(static_cast<int>(statuses[i])));
+    if (reader.shape().has_joint() || reader.shape().has_variances)
+        record.sample = [=, segments_found = record.segments.found](const std::vector<int>& components) {
+            SampledSteps sample;
+            open_again([&](const RecordReader& again) {
+                sample = sampled_steps(again, components, judged, segments_found);
+            });
+            return sample;
         };
     if (reader.shape().has_truth_covariance)
         record.truth = truth_evidence(reader, name, segments);

@@ -202,6 +202,7 @@ Evidence evidence_of(const Record& record) {
     evidence.segments = record.segments.found;
     evidence.of_innovations = record.of_innovations;
     evidence.truth = record.truth;
+    evidence.sample = record.sample;
     if (evidence.truth) evidence.diverged = evidence.truth->added.diverged;
     const auto of = [](const ScenarioResults& results) { return evidence_of(results, results.arms.front()); };
     std::optional<Evidence> centred;

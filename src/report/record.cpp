@@ -59,15 +59,31 @@ void hint_at_gate(const Record& record, const Evidence& evidence, Consistency& v
     }
 }
 
-/// The innovations are as large as S says, the errors are far from what P says, and no cause is named.
+bool is_too_large(const Finding& finding) {
+    return finding.what == Fault::optimistic && (finding.about == Subject::size || finding.about == Subject::direction);
+}
+
+/// The innovations are right, the errors are not what P says, and no cause is named.
 void hint_at_innovations(const Evidence& evidence, Consistency& verdict) {
-    if (verdict.findings.empty() || !verdict.hints.empty() || evidence.nis.empty() || evidence.groups.empty()) return;
-    const double margin = verdict.limits.margin, nis = evidence.nis.front().ratio,
-                 nees = evidence.groups.front().run.mean;
-    if (!(std::abs(nis - 1) < margin) || !(std::abs(nees - 1) > 3 * margin)) return;
-    verdict.hints.push_back("the innovations are as large as S says (NIS/m " + number(nis, 2) +
-                            (nees < 1 ? "): is P that before the update, or is what is too large not measured?"
-                                      : "): is the truth of another step or frame, or is what is wrong not measured?"));
+    if (!verdict.looks_wrong() || !verdict.hints.empty() || evidence.groups.empty() ||
+        !innovations_are_right(evidence, verdict.limits))
+        return;
+    const NisEvidence& nis = evidence.nis.front();
+    const bool large = std::ranges::any_of(verdict.findings, is_too_large);
+    // An update leaves P as it is in all directions but as many as it has rows.
+    constexpr double near = 0.8;
+    const double rows = nis.nis.observed > 0 ? nis.degrees / static_cast<double>(evidence.trials) / nis.nis.observed : 0;
+    const std::vector<double>& spectrum = verdict.directions.spectrum;
+    const auto left = std::ranges::count_if(spectrum, [](double ratio) { return ratio > near && ratio < 1 / near; });
+    if (!large && (!(evidence.groups.front().run.mean < 1 - 3 * verdict.limits.margin) ||
+                   static_cast<double>(left) < static_cast<double>(spectrum.size()) - rows - 0.5))
+        return;
+    verdict.hints.push_back(
+        "the innovations are as large as S says (NIS/m " + number(nis.ratio, 2) +
+        (large
+             ? "): what do they not see: a truth or a measurement of another step or frame, a bias that is drawn once "
+               "in a run?"
+             : "): is P that before the update, or is what is too large not measured?"));
 }
 
 /// Groups of a joint covariance that are whole at no step of any trial: the verdict is of the others.
@@ -82,10 +98,6 @@ void name_absent_groups(const Evidence& evidence, const Limits& limits, std::vec
 }
 
 std::string nees_text(const GroupEvidence& state) { return with_interval(state.run.mean, over_steps95(state)); }
-
-bool is_too_large(const Finding& finding) {
-    return finding.what == Fault::optimistic && (finding.about == Subject::size || finding.about == Subject::direction);
-}
 
 /// Whether a mean error or the spread about it is what is too large.
 void attribute_errors(const Record& record, ArmReport& arm) {
@@ -151,7 +163,7 @@ void try_other_charts(const Record& record, ArmReport& arm) {
     Consistency& verdict = arm.consistency;
     const GroupEvidence& own = arm.evidence.groups.front();
     const bool doubted = verdict.chart_doubted || std::ranges::any_of(verdict.findings, is_too_large);
-    if (record.in_other_charts.empty() || !doubted || !(own.run.count > 0)) return;
+    if (record.in_other_charts.empty() || verdict.mix_up || !doubted || !(own.run.count > 0)) return;
     const auto off = [](const GroupEvidence& group) { return std::abs(std::log(group.run.mean)); };
     std::string nearest;
     std::vector<std::string> tried{nees_text(own) + " with the error in the chart `" + record.chart + "`"};
@@ -169,6 +181,8 @@ void try_other_charts(const Record& record, ArmReport& arm) {
             nearest = other.chart;
         }
     }
+    if (!nearest.empty()) verdict.hints.clear();  // they were of errors in the wrong chart
+    verdict.mix_up = !nearest.empty();
     const std::string form = nearest == "plain" ? " (position in the world, heading apart: R2 x SO2, or R3 x SO3)" : "";
     verdict.hints.push_back("NEES/dim of " + own.name + " is " + joined(tried, ", and ") +
                             (nearest.empty() ? ": the chart is not what is wrong"
@@ -210,13 +224,13 @@ Report make_record_report(Record record, const std::string& path, const Limits& 
     }
     const auto is_copy = [](const RecordTrouble& trouble) { return trouble.status == Status::completed; };
     if (std::ranges::any_of(record.troubles, is_copy)) arm.cause.reset();  // their status says less
+    try_other_charts(record, arm);
     hint_at_known_start(record, arm.consistency);
     hint_at_gaps(arm.gaps, arm.consistency);
     hint_at_gate(record, arm.evidence, arm.consistency);
     hint_at_innovations(arm.evidence, arm.consistency);
     attribute_errors(record, arm);
     name_absent_groups(arm.evidence, limits, report.not_judged);
-    try_other_charts(record, arm);
     if (record.truth_sigmas && (arm.evidence.of_few_runs() || arm.evidence.trials == 1))
         find_turning_points(record, arm.evidence, arm.consistency);
     show_finite_trials(arm.evidence, limits);

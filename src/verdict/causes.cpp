@@ -3,14 +3,13 @@
 #include "base/formatted.hpp"
 #include "base/nan.hpp"
 #include "statistics/moments/trial_moments.hpp"
-#include "verdict/consistency_parts.hpp"
+#include "verdict/applied.hpp"
+#include "verdict/judgement.hpp"
 
 #include <credence/statistics.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <numbers>
 #include <numeric>
 
 namespace credence {
@@ -19,7 +18,7 @@ namespace {
 
 /// Logarithms of the mean-square error and of the variance that P says, [component][step]; NaN: unknown.
 struct Sizes {
-    std::vector<std::string> component;
+    std::vector<Component> component;
     std::vector<std::vector<double>> error, variance;
     double tolerance = 0;  ///< a mean distance of logarithms within which two of them are the same
 
@@ -27,9 +26,10 @@ struct Sizes {
     std::size_t steps() const { return error.empty() ? 0 : error.front().size(); }
 };
 
-/// Of the components that are not known exactly.
+/// Of the components that are not known exactly, in runs that are trials.
 Sizes sizes_of(const Evidence& evidence) {
     Sizes sizes;
+    if (evidence.of_few_runs()) return sizes;
     sizes.tolerance = 0.1 + std::sqrt(2 / static_cast<double>(evidence.trials));
     for (const BiasEvidence& bias : evidence.bias) {
         if (bias.mean_square.size() != bias.step.size() || !(bias.largest_error > 0)) continue;
@@ -40,221 +40,120 @@ Sizes sizes_of(const Evidence& evidence) {
             error.push_back(std::log(bias.mean_square[k]));
             variance.push_back(error.back() - std::log(square));
         }
-        sizes.component.push_back(bias.component);
+        sizes.component.push_back({bias.component, bias.unit});
         sizes.error.push_back(std::move(error));
         sizes.variance.push_back(std::move(variance));
     }
     return sizes;
 }
 
-/// The mean size of a number of each step of some components, unknown ones left out; NaN where there is none.
-double mean_size(const Sizes& sizes, const std::vector<std::size_t>& components,
-                 const std::function<double(std::size_t j, std::size_t k)>& number) {
-    double sum = 0, count = 0;
-    for (const std::size_t j : components)
-        for (std::size_t k = 0; k < sizes.steps(); ++k)
-            if (const double value = std::abs(number(j, k)); std::isfinite(value)) sum += value, ++count;
-    return sum / count;
-}
+}  // namespace
 
-std::vector<std::size_t> all_of(const Sizes& sizes) {
-    std::vector<std::size_t> all(sizes.components());
-    std::iota(all.begin(), all.end(), 0);
-    return all;
-}
-
-/// P is a power of what it should be.
-std::string power_of(const Sizes& sizes) {
-    const std::vector<std::size_t> all = all_of(sizes);
-    const auto about_mean = [&](const auto& number) {
-        double sum = 0, count = 0;
-        for (const std::size_t j : all)
-            for (std::size_t k = 0; k < sizes.steps(); ++k)
-                if (const double x = number(j, k); std::isfinite(x)) sum += x, ++count;
-        return mean_size(sizes, all, [&](auto j, auto k) { return number(j, k) - sum / count; });
-    };
-    constexpr double least_spread = 0.3;  // below it a power is a factor
-    if (!(about_mean([&](auto j, auto k) { return sizes.variance[j][k]; }) > least_spread)) return {};
-    const auto distance = [&](double power) {
-        const auto off = [&](auto j, auto k) { return sizes.error[j][k] - power * sizes.variance[j][k]; };
-        return power < 0 ? about_mean(off) : mean_size(sizes, all, off);  // correlations make an inverse larger
-    };
-    for (const auto& [power, what] : {std::pair(2.0, "standard deviations, where variances belong"),
-                                      std::pair(0.5, "squared variances"),
-                                      std::pair(-1.0, "the inverse of the covariance, an information matrix")})
-        if (distance(power) < sizes.tolerance && distance(power) < distance(1) / 3)
-            return "the mean-square errors are P's variances to the power " + std::string(power == 2   ? "2"
-                                                                                          : power > 0 ? "1/2"
-                                                                                                      : "-1") +
-                   ": does P hold " + what + "?";
-    return {};
-}
-
-/// Errors and P in degrees and radians.
-std::string degrees_of(const Sizes& sizes) {
-    std::vector<std::string> large, small;
-    const auto distance = [&](std::size_t component, double logarithm) {
-        return mean_size(sizes, {component},
-                         [&](auto j, auto k) { return sizes.error[j][k] - sizes.variance[j][k] - logarithm; });
-    };
-    for (std::size_t j = 0; j < sizes.components(); ++j) {
-        const double degrees = 2 * std::log(180 / std::numbers::pi);
-        if (distance(j, degrees) < sizes.tolerance) large.push_back(sizes.component[j]);
-        if (distance(j, -degrees) < sizes.tolerance) small.push_back(sizes.component[j]);
-    }
-    if (!large.empty())
-        return "errors of " + first_of(large) + " are 57 times P's sigma: is the error in degrees, and P in rad²?";
-    if (!small.empty())
-        return "errors of " + first_of(small) + " are 1/57 of P's sigma: is P in squared degrees, the error in rad?";
-    return {};
-}
-
-/// P of another step.
-std::string shift_of(const Sizes& sizes) {
-    const std::vector<std::size_t> all = all_of(sizes);
-    const auto distance = [&](std::size_t error, std::size_t variance) {
-        return mean_size(sizes, all, [&](auto j, auto k) {
-            return k + 1 < sizes.steps() ? sizes.error[j][k + error] - sizes.variance[j][k + variance] : nan;
-        });
-    };
-    constexpr std::size_t least_steps = 5;
-    if (sizes.steps() < least_steps) return {};
-    const double own = distance(0, 0), earlier = distance(1, 0), later = distance(0, 1);
-    if (!(std::min(earlier, later) < std::min(sizes.tolerance, own / 3))) return {};
-    return earlier < later ? "the errors are as large as P of the step before says: is P a step early?"
-                           : "the errors are as large as P of the step after says: is P a step late?";
-}
-
-/// Two components whose variances are exchanged.
-std::string exchange_of(const Sizes& sizes) {
-    const auto distance = [&](std::size_t error, std::size_t variance) {
-        return mean_size(sizes, {error}, [&](auto, auto k) {
-            return sizes.error[error][k] - sizes.variance[variance][k];
-        });
-    };
-    constexpr std::size_t most = 32;  // components: every pair is tried
-    for (std::size_t i = 0; i < std::min(most, sizes.components()); ++i)
-        for (std::size_t j = i + 1; j < std::min(most, sizes.components()); ++j)
-            if (std::max(distance(i, j), distance(j, i)) <
-                std::min(sizes.tolerance, std::min(distance(i, i), distance(j, j)) / 3))
-                return "errors of " + sizes.component[i] + " are as large as P says of " + sizes.component[j] +
-                       ", and the other way round: are they exchanged?";
-    return {};
-}
-
-/// Variances that stand for "unknown".
-std::string placeholders_of(const Sizes& sizes) {
+std::string placeholders_of(const Evidence& evidence) {
+    const Sizes sizes = sizes_of(evidence);
     std::vector<std::string> names;
     constexpr double far_too_large = 20;  // e^20: sigma is more than 20,000 times the error
     for (std::size_t j = 0; j < sizes.components(); ++j)
-        if (mean_size(sizes, {j}, [&](auto, auto k) { return sizes.error[j][k] - sizes.variance[j][k]; }) >
-                far_too_large &&
-            sizes.error[j].front() < sizes.variance[j].front())
-            names.push_back(sizes.component[j]);
+        if (double sum = 0, count = 0; sizes.error[j].front() < sizes.variance[j].front()) {
+            for (std::size_t k = 0; k < sizes.steps(); ++k)
+                if (const double size = std::abs(sizes.error[j][k] - sizes.variance[j][k]); std::isfinite(size))
+                    sum += size, ++count;
+            if (sum > far_too_large * count) names.push_back(sizes.component[j].name);
+        }
     if (names.empty()) return {};
     return "P says next to nothing of " + first_of(names) +
            ": do large variances stand for what is not estimated? Leave these components out";
 }
 
-/// NEES/dim is right at one end of a run, and not at the other.
-std::string trend_of(const Evidence& evidence, const Limits& limits) {
-    const std::vector<Moments>& steps = evidence.groups.front().step;
-    constexpr std::size_t least_steps = 4;
-    if (steps.size() < least_steps) return {};
-    const double trials = evidence.groups.front().dimension * static_cast<double>(evidence.trials),
-                 right = std::log1p(3 * limits.margin), noise = 3 * std::sqrt(2 / trials),
-                 wrong = std::log(1.5) + noise;
-    const auto some = std::max<std::ptrdiff_t>(2, std::ssize(steps) / 5);
-    const double last = std::accumulate(steps.end() - some, steps.end(), 0.0,
-                                        [](double sum, const Moments& step) { return sum + std::log(step.mean); }) /
-                        static_cast<double>(some);
-    const double first = std::log(steps.front().mean);
-    const auto smaller = [&](const Moments& step) { return std::abs(std::log(step.mean)) < std::abs(first) + noise; };
-    const auto said = [&](const char* what) {
-        return formatted("NEES/dim is %.2g at the first step and %.2g at the last: ", std::exp(first), std::exp(last)) +
-               what;
-    };
-    if (std::abs(first) > wrong && std::abs(last) < right && std::ranges::all_of(steps, smaller))
-        return said("is P at the start that of the first errors, and are these small enough to linearise?");
-    if (last > wrong && std::abs(first) < std::max(right, last / 3))
-        return said("do errors build up that P does not know of (bias, drift, process noise)?");
-    return {};
-}
-
-/// Mean errors that are the same at all steps.
-std::string offset_of(const Evidence& evidence, const Sizes& sizes) {
+std::string offset_of(const Evidence& evidence) {
+    const Sizes sizes = sizes_of(evidence);
     for (const BiasEvidence& bias : evidence.bias) {
-        const auto at = std::ranges::find(sizes.component, bias.component);
+        const auto at = std::ranges::find(sizes.component, bias.component, &Component::name);
         if (at == sizes.component.end() || !(std::abs(bias.run.mean) > 5 * bias.run.standard_error)) continue;
         const std::vector<double>& variance = sizes.variance[static_cast<std::size_t>(at - sizes.component.begin())];
-        std::vector<double> means;
-        for (std::size_t k = 0; k < variance.size(); ++k)
-            if (const double mean = bias.step[k].mean * std::exp(variance[k] / 2); std::isfinite(mean))
-                means.push_back(mean);
-        constexpr std::size_t least_steps = 5;
-        if (means.size() < least_steps) continue;
-        const auto [low, high] = std::ranges::minmax(means);
-        if (high - low < std::min(std::abs(low), std::abs(high)))
-            return "errors of " + bias.component + formatted(" are %.2g", quantile(means, 0.5)) +
-                   (bias.unit.empty() ? "" : " " + bias.unit) +
-                   " on average at all steps: an offset of the truth, the map or the frame?";
+        double count = 0, sum = 0, square_sum = 0, errors = 0;
+        for (std::size_t k = 0; k < variance.size(); ++k) {
+            const double sigma = std::exp(variance[k] / 2), mean = bias.step[k].mean * sigma;
+            if (!std::isfinite(mean)) continue;
+            ++count, sum += mean, square_sum += mean * mean, errors += std::pow(bias.step[k].standard_error * sigma, 2);
+        }
+        constexpr double least_steps = 5;
+        const Moments means = moments_from_sums(static_cast<std::int64_t>(count), sum, square_sum);
+        if (count < least_steps ||
+            !(std::pow(means.standard_deviation, 2) < 2 * errors / count + std::pow(means.mean / 4, 2)))
+            continue;
+        return "errors of " + bias.component + formatted(" are %.2g", means.mean) +
+               (bias.unit.empty() ? "" : " " + bias.unit) +
+               " on average at all steps: an offset of the truth, the map or the frame?";
     }
     return {};
 }
 
-/// Few trials are wrong, and the others are not.
-std::string few_of(const Evidence& evidence, const Limits& limits) {
-    const double mean = evidence.groups.front().run.mean;
-    if (!evidence.moments || !(mean > 1 + 3 * limits.margin)) return {};
-    std::vector<double> ratios;
-    for (std::size_t i = 0; i < evidence.moments->trials(); ++i)
-        if (const double ratio = evidence.moments->X(i, 0); !std::isnan(ratio)) ratios.push_back(ratio);
-    if (ratios.empty()) return {};
-    // Of chi-square with the degrees of freedom that the quartiles have [Wilson and Hilferty 1931], the median is below
-    // the mean.
-    const double spread = std::log(quantile(ratios, 0.75) / quantile(ratios, 0.25)),
-                 degrees = 2 * std::pow(1.349 / spread, 2), median = quantile(ratios, 0.5),
-                 right = std::pow(1 - 2 / (9 * degrees), 3);
-    constexpr double clearly = 1.5;
-    if (!(median < (1 + limits.margin) * right && mean * right > clearly * median)) return {};
-    return formatted("half of the %s have NEES/dim below %.2g: few are wrong, and the worst are named",
-                     evidence.units().c_str(), median);
-}
-
-}  // namespace
-
-std::string divergence_of(const Evidence& evidence) {
-    if (evidence.groups.empty()) return {};
-    const GroupEvidence& state = evidence.groups.front();
-    if (!(state.run.mean > diverged_nees_ratio) || state.step.size() < 2) return {};
-    constexpr double many = 20;  // runs: one of them may have small errors at first by chance
-    const bool are_many = state.step.front().count >= many;
-    const auto some = std::max<std::ptrdiff_t>(1, std::ssize(state.step) / 5);
-    const auto mean = [](auto from, auto to) {
-        return std::accumulate(from, to, 0.0, [](double sum, const Moments& step) { return sum + step.mean; }) /
-               static_cast<double>(to - from);
-    };
-    const double first = mean(state.step.begin(), state.step.begin() + (are_many ? 1 : some)),
-                 last = mean(state.step.end() - some, state.step.end());
-    if (!(last > (are_many ? 3 : 10) * first)) return {};
-    return formatted("the filter diverges, NEES/dim is %.2g at first and %.2g at last: is a Jacobian wrong, or does P "
-                     "not know of a drift or of process noise? Finite differences show a wrong one (in C++ "
-                     "jacobian_mismatch of credence/filters.hpp)", first, last);
-}
-
-std::vector<std::string> causes_of(const Evidence& evidence, const Limits& limits) {
-    const Sizes sizes = evidence.of_few_runs() ? Sizes{} : sizes_of(evidence);
-    std::vector<std::string> causes{few_of(evidence, limits), placeholders_of(sizes)};
-    for (const auto& cause : {exchange_of, power_of, degrees_of, shift_of}) {  // one explains the size of the errors
-        causes.push_back(cause(sizes));
-        if (!causes.back().empty()) break;
+std::string mix_up_of(const Evidence& evidence) {
+    if (evidence.sample) {
+        const std::vector<int> components = uncertain_components(evidence, evidence.groups.front().components);
+        std::vector<Component> named;
+        for (const int j : components) {
+            const BiasEvidence& bias = evidence.bias[static_cast<std::size_t>(j)];
+            named.push_back({bias.component, bias.unit});
+        }
+        return applied_cause(evidence.sample(components), named);
     }
-    const bool is_explained = !causes.back().empty();
-    if (!is_explained) causes.push_back(divergence_of(evidence));
-    if (is_explained || causes.back().empty()) causes.push_back(offset_of(evidence, sizes));
-    if (std::ranges::all_of(causes, &std::string::empty)) causes.push_back(trend_of(evidence, limits));
-    std::erase(causes, "");
-    return causes;
+    const Sizes sizes = sizes_of(evidence);
+    SampledSteps sample{{}, sizes.tolerance};
+    for (std::size_t k = 0; k < sizes.steps(); ++k) {
+        Eigen::VectorXd e(std::ssize(sizes.component)), variance(e.size());
+        for (std::size_t j = 0; j < sizes.components(); ++j) {
+            e(static_cast<Eigen::Index>(j)) = std::exp(sizes.error[j][k] / 2);
+            variance(static_cast<Eigen::Index>(j)) = std::exp(sizes.variance[j][k]);
+        }
+        if (!e.allFinite() || !variance.allFinite()) continue;
+        const Eigen::MatrixXd P = variance.asDiagonal();
+        if (!sample.steps.empty()) sample.steps.back().after = P;
+        sample.steps.push_back({static_cast<std::int64_t>(k), static_cast<int>(k), e, P,
+                                sample.steps.empty() ? Eigen::MatrixXd() : sample.steps.back().P, {}});
+    }
+    return applied_cause(sample, sizes.component);
+}
+
+std::string dropped_of(const Evidence& evidence) {
+    const TrialMoments* moments = (evidence.has_offsets() ? evidence.centred : evidence.moments).get();
+    if (moments == nullptr || !evidence.joint) return {};
+    const auto is_right = [&](int j) {
+        const BiasEvidence& bias = evidence.bias[static_cast<std::size_t>(j)];
+        Moments square = bias.square;
+        for (const GroupEvidence& group : evidence.groups)
+            if (group.components == std::vector{j}) square = group.run;
+        const Interval interval = t_interval(square, 0.01);
+        return interval.low < 1 && interval.high > 1;
+    };
+    constexpr double hardly_any = 0.1, level = 0.001;
+    double largest = hardly_any;
+    std::string said;
+    const int n = moments->components;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < i; ++j) {
+            double count = 0, sum = 0, square_sum = 0, by_P = 0;
+            for (std::size_t trial = 0; trial < moments->trials(); ++trial) {
+                const double steps = moments->C(trial)[triangle_place(i, i)],
+                             product = moments->S(trial)[triangle_place(i, j)] / steps;
+                if (!std::isfinite(product)) continue;
+                by_P = std::max(by_P, std::abs(moments->C(trial)[triangle_place(i, j)]));
+                ++count, sum += product, square_sum += product * product;
+            }
+            const Moments correlation = moments_from_sums(static_cast<std::int64_t>(count), sum, square_sum);
+            if (by_P > 0 || count < 2 || !(std::abs(correlation.mean) > largest)) continue;
+            if (!(std::abs(correlation.mean) > t_quantile(level / n / n, count - 1) * correlation.standard_error) ||
+                !is_right(i) || !is_right(j))
+                continue;
+            largest = std::abs(correlation.mean);
+            said = "each component is right by itself, and P says of " +
+                   evidence.bias[static_cast<std::size_t>(j)].component + " and " +
+                   evidence.bias[static_cast<std::size_t>(i)].component +
+                   formatted(" that they are not correlated, where errors are by %.2f: was a covariance dropped?",
+                             correlation.mean);
+        }
+    return said;
 }
 
 std::string repeated_trials(const Evidence& evidence) {

@@ -93,7 +93,9 @@ Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
 Consistency judge_survivors(const Evidence& evidence, const Limits& limits) {
     if (evidence.trials == 1 && !evidence.segments.count) {
         Consistency verdict = judge_single_run(evidence, limits);
-        if (std::string diverges = divergence_of(evidence); !diverges.empty()) verdict.hints.push_back(diverges);
+        const std::string written = verdict.looks_wrong() ? mix_up_of(evidence) : "", diverges = divergence_of(evidence);
+        verdict.mix_up = !written.empty();
+        if (verdict.mix_up || !diverges.empty()) verdict.hints.push_back(verdict.mix_up ? written : diverges);
         return verdict;
     }
     Consistency verdict = judge_trials(evidence, limits);
@@ -113,7 +115,7 @@ void Judgement::add(Side side, Finding finding) {
 
 void Judgement::add_correlation(Finding finding) {
     (finding.value > 0 ? above_ : below_) = true;
-    below_ |= too_small_withheld_;
+    below_ |= withheld_;
     findings_.push_back(std::move(finding));
 }
 
@@ -149,6 +151,7 @@ Consistency Judgement::consistency(const Evidence& evidence) {
     verdict.findings = std::move(findings_);
     verdict.cautions = std::move(notes_);
     verdict.directions = std::move(directions);
+    verdict.withheld = withheld_;
     for (double Reached::* margin : {&Reached::nees, &Reached::direction, &Reached::bias}) {
         const double reached = reached_.*margin;
         verdict.reached.*margin = reached > 0 && std::isfinite(reached) ? reached : nan;

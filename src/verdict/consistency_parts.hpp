@@ -57,14 +57,25 @@ void caution_about_whiteness(const Evidence& evidence, Consistency& verdict);
 void caution_about_innovations(const Evidence& evidence, Consistency& verdict);
 void caution_about_distribution(const Evidence& evidence, Consistency& verdict);
 
-/// Sentences on what findings such as these often come from, by the size of the errors beside P's.
-std::vector<std::string> causes_of(const Evidence& evidence, const Limits& limits);
+/// Sentences on what findings such as these often come from. Says in the verdict whether that is a mix-up.
+std::vector<std::string> causes_of(const Evidence& evidence, Consistency& verdict);
+
+/// Whether innovations are as large as S says, and not correlated; false without them.
+bool innovations_are_right(const Evidence& evidence, const Limits& limits);
 
 /// A sentence on NEES that grows beyond that of a diverged trial, which it does not where a factor on P or a unit is
 /// wrong from the start; empty where it does not.
 std::string divergence_of(const Evidence& evidence);
 
-/// A sentence on two detailed trials that are the same; empty where there are none.
+/// Sentences that are empty where there is nothing to say. On variances that stand for "unknown".
+std::string placeholders_of(const Evidence& evidence);
+/// On mean errors that are the same at all steps, as far as these can tell.
+std::string offset_of(const Evidence& evidence);
+/// On what was written wrongly: of a record by its steps, and else by one step of each mean size.
+std::string mix_up_of(const Evidence& evidence);
+/// On two components that are right by themselves, and whose errors are correlated where P never says so.
+std::string dropped_of(const Evidence& evidence);
+/// On two detailed trials that are the same.
 std::string repeated_trials(const Evidence& evidence);
 
 /// Adds hints: what findings such as these often come from.

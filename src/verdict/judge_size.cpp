@@ -24,10 +24,10 @@ void withhold_too_small(const JudgedSize& size, const Interval& bounds, const Ev
         if (j < std::ssize(evidence.bias) &&
             has_offset(evidence.bias[static_cast<std::size_t>(j)], evidence, judgement.limits()))
             return;
-    judgement.withhold_too_small(
-        "P is larger than the errors of " +
-        (evidence.trials == 1 ? "this run" : "these " + std::to_string(evidence.trials) + " runs") + ": NEES/dim of " +
-        size.name + formatted(" %.3g (%.3g to %.3g)", size.sample.mean, bounds.low, bounds.high));
+    judgement.withhold("P is larger than the errors of " +
+                       (evidence.trials == 1 ? "this run" : "these " + std::to_string(evidence.trials) + " runs") +
+                       ": NEES/dim of " + size.name +
+                       formatted(" %.3g (%.3g to %.3g)", size.sample.mean, bounds.low, bounds.high));
 }
 
 MeanClaim claim_on_size(PositiveSample sample, int dimension, double level, const Evidence& evidence, double margin) {

@@ -23,10 +23,8 @@ public:
     /// A finding that something is too large (above) or too small for P; its `what` is set here.
     void add(Side side, Finding finding);
     void add_bias(Finding finding);
-    /// Innovations that are correlated, where the verdict is of them: their sums are too large for S, or too small. Each
-    /// may be too small for S nevertheless, even where too few runs withhold that as a finding.
+    /// Innovations that are correlated, where the verdict is of them: their sums are too large for S, or too small.
     void add_correlation(Finding finding);
-    void withhold_too_small(const std::string& why) { too_small_withheld_ = true, not_shown(why, true); }
     /// What is said and is no finding.
     void note(Finding finding);
     /// Whether something was shown to lie within its margin; `what` names it.
@@ -36,6 +34,8 @@ public:
     /// `consistent` is withheld, for this reason, which more trials may remove or not.
     void not_shown(const std::string& why, bool more_trials_help);
     void suspect(Suspicion suspicion);
+    /// That P is larger than the errors of runs that are too few to find it so.
+    void withhold(const std::string& what) { not_shown(what, withheld_ = true); }
 
     DirectionsFound directions;
 
@@ -48,7 +48,7 @@ private:
     std::vector<std::string> reasons_, unknown_;
     std::vector<Suspicion> suspicions_;
     Reached reached_;
-    bool above_ = false, below_ = false, too_small_withheld_ = false, all_shown_ = true, more_trials_help_ = true;
+    bool above_ = false, below_ = false, all_shown_ = true, more_trials_help_ = true, withheld_ = false;
 };
 
 /// Whether rounding may change a group's NEES by more than a share of the margin: then nothing is said by it.

@@ -141,7 +141,7 @@ TEST_CASE("judge: several records are one report, each with its verdict and its 
     CHECK(arms[1]["verdict"] == "mixed");
     CHECK_THAT(arms[1]["findings"][0]["when"].get<std::string>(), Contains("direction 0.7"));
     CHECK(arms[2]["verdict"] == "optimistic");
-    CHECK_THAT(arms[2]["hints"][0].get<std::string>(), Contains("off by a factor of about 4"));
+    CHECK_THAT(arms[2]["hints"][0].get<std::string>(), Contains("P is too small by a factor of about 4 in every direction"));
     CHECK(here.credence("judge a.h5 a.h5 --quiet").out.find("a_2/record") != std::string::npos);
     CHECK(here.credence("judge c.h5 b.h5 --quiet --require consistent").exit_code == 1);
     CHECK(here.credence("judge a.h5 missing.h5 --quiet").exit_code == 2);

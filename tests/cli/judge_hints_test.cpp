@@ -110,23 +110,31 @@ TEST_CASE("judge: where errors are too large in either chart, the chart is not b
     CHECK_THAT(both["hints"].back().get<std::string>(), Contains("the chart is not what is wrong"));
 }
 
-TEST_CASE(
-    "judge: errors of the right size and wrong directions are asked for their frame, without a manifold as well") {
+TEST_CASE("judge: errors of the right size and wrong directions are asked for their frame, unless they are exchanged") {
     const Workplace here;
-    DrawnRecord drawn(300, 8, 2);
-    std::mt19937_64 random(6);
-    std::normal_distribution<double> normal;
-    for (std::size_t i = 0; i < drawn.error.size(); ++i) {
-        const double a = normal(random), b = normal(random);
-        drawn.error[i] = Eigen::Vector2d(a, 2 * b);  // a quarter of a turn beside what P says
-        drawn.covariance[i] = Eigen::Vector2d(4, 1).asDiagonal();
-    }
-    write_file(here.path("r.h5"), [&](const Handle& root) { write_drawn(root, drawn); });
-    const Json turned = judged(here);
+    const auto write = [&](double turn) {  // a quarter of a turn beside what P says
+        DrawnRecord drawn(300, 8, 2);
+        std::mt19937_64 random(6);
+        std::normal_distribution<double> normal;
+        const Eigen::Matrix2d R = Eigen::Rotation2Dd(turn).toRotationMatrix();
+        for (std::size_t i = 0; i < drawn.error.size(); ++i) {
+            const double a = normal(random), b = normal(random);
+            drawn.error[i] = R * Eigen::Vector2d(a, 2 * b);
+            drawn.covariance[i] = R * Eigen::Vector2d(4, 1).asDiagonal() * R.transpose();
+        }
+        write_file(here.path("r.h5"), [&](const Handle& root) { write_drawn(root, drawn); });
+        return judged(here);
+    };
+    const Json exchanged = write(0);
+    CHECK(exchanged["verdict"] == "mixed");
+    REQUIRE(exchanged["hints"].size() == 1);
+    CHECK_THAT(exchanged["hints"][0].get<std::string>(), Contains("are as large as P says of x0"));
+    CHECK(exchanged["mix_up"] == true);
+    const Json turned = write(0.8);
     CHECK(turned["verdict"] == "mixed");
-    REQUIRE(turned["hints"].size() == 2);
-    CHECK_THAT(turned["hints"][0].get<std::string>(), Contains("are as large as P says of x1"));
-    CHECK_THAT(turned["hints"][1].get<std::string>(), Contains("is the error in the chart and frame of P"));
+    REQUIRE(turned["hints"].size() == 1);
+    CHECK_THAT(turned["hints"][0].get<std::string>(), Contains("is the error in the chart and frame and of the step of P"));
+    CHECK(turned["mix_up"] == false);
     CHECK_FALSE(turned.contains("other_charts"));
 }
 

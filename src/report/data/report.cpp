@@ -165,6 +165,7 @@ Json arm_json(const Report& report, const ArmReport& arm) {
     json["p_exact"] = arm.evidence.groups.empty() ? nan : t_test(arm.evidence.groups.front().run, 1);
     json["directions"] = directions_json(arm.consistency.directions);
     json["hints"] = arm.consistency.hints;
+    json["mix_up"] = arm.consistency.mix_up;
     const std::optional<Attribution>& found = arm.consistency.attribution;
     json["attribution"] = found ? Json{{"carrier", carrier_name(found->carrier)},
                                        {"share", found->share},
