@@ -1,6 +1,6 @@
-"""How often a planted fault is named [docs/verdicts.md]: prints the table causes.csv, of 100 runs of 40 steps and of one
-log of 3,000, with the innovations and without. What is right to say of a fault stands in `FAULTS`: a hint is right if
-all its words are of what is accepted, wrong if some are of another fault.
+"""How often a planted fault is named [docs/verdicts.md]: prints the table causes.csv, of 100 runs of 40 steps and of
+one log of 3,000, with the innovations and without. What is right to say of a fault stands in `FAULTS`: a hint is right
+if all its words are of what is accepted, wrong if some are of another fault.
 
     python3 experiments/verdict/causes.py [SEEDS]      of each fault, 10 by default
 
@@ -112,7 +112,7 @@ def robot(random: np.random.Generator, runs: int, steps: int, of: Filter) -> Log
 
 def kalman(random: np.random.Generator, runs: int, steps: int, of: Filter, F: Callable[[Array], Array],
            Q: Callable[[Array], Array], H: Array, R: Array, P0: Array, turn: Array) -> Log:
-    n, m = len(P0), len(R)
+    n = len(P0)
 
     def normal(covariance: Array) -> Array:
         L = np.linalg.cholesky(covariance)
@@ -130,7 +130,7 @@ def kalman(random: np.random.Generator, runs: int, steps: int, of: Filter, F: Ca
     last = x.copy()
     made: list[tuple[Array, ...]] = []
     for _ in range(steps):
-        x, last = moved(x) + normal(Q(x) if n == 3 else Q(x)), x
+        x, last = moved(x) + normal(Q(x)), x
         A, W = F(estimate), of.q * Q(estimate)
         estimate, P = moved(estimate), A @ P @ (A.transpose(0, 2, 1) if A.ndim == 3 else A.T) + W
         before = P

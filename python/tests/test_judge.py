@@ -17,7 +17,6 @@ from conftest import python, refusal, refused
 from scipy import stats
 
 import credence
-from credence.judging import REFUTED
 
 CORPUS = records.corpus()
 REFERENCE = sorted((pathlib.Path(__file__).parents[2] / "tests" / "reference").glob("record_*.h5"))
@@ -31,7 +30,7 @@ def test_arrays_give_the_bits_of_the_program(name, tmp_path, program):
     verdict = credence.judge(**CORPUS[name], name=str(path))
     assert verdict.json == json.loads(printed)
     said = str(verdict).partition("hint: what to change in it: credence.tune(")
-    assert (said[0], bool(said[1])) == (program("judge", path, "--quiet")[1], verdict.verdict in REFUTED)
+    assert (said[0], bool(said[1])) == (program("judge", path, "--quiet")[1], verdict.is_of_the_filter)
 
 
 @pytest.mark.parametrize("path", REFERENCE, ids=lambda path: path.stem)

@@ -93,7 +93,9 @@ Record read_record(RecordReader reader, const std::string& name, const ReportPro
             return about;
         };
     std::vector<char> judged = counted;
-    for (std::size_t i = 0; arm.totals.trials.diverged_count && i < judged.size(); ++i)
+    const TrialTotals& totals = arm.totals.trials;
+    const bool with_diverged = totals.diverged_count || 10 * totals.diverged() > totals.counted();
+    for (std::size_t i = 0; with_diverged && i < judged.size(); ++i)
         judged[i] = !failed(static_cast<Status>(static_cast<int>(statuses[i])));
     if (reader.shape().has_joint() || reader.shape().has_variances)
         record.sample = [=, segments_found = record.segments.found](const std::vector<int>& components) {

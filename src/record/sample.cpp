@@ -25,7 +25,8 @@ SampledSteps sampled_steps(const RecordReader& reader, const std::vector<int>& c
             return;
         const Eigen::MatrixXd P = covariance_of(checked, components);
         const bool follows = step.trial == run && step.step == behind;
-        if (follows && !sample.steps.empty() && sample.steps.back().step + 1 == step.step) sample.steps.back().after = P;
+        if (follows && !sample.steps.empty() && sample.steps.back().step + 1 == step.step)
+            sample.steps.back().after = P;
         if ((step.step + step.trial) % every == 0)
             sample.steps.push_back({step.trial * parts + step.step / length, step.step, checked.e(components), P,
                                     follows ? before : Eigen::MatrixXd(), {}});

@@ -72,7 +72,7 @@ void hint_at_innovations(const Evidence& evidence, Consistency& verdict) {
     const bool large = std::ranges::any_of(verdict.findings, is_too_large);
     // An update leaves P as it is in all directions but as many as it has rows.
     constexpr double near = 0.8;
-    const double rows = nis.nis.observed > 0 ? nis.degrees / static_cast<double>(evidence.trials) / nis.nis.observed : 0;
+    const double steps = nis.nis.observed, rows = nis.degrees / static_cast<double>(evidence.trials) / steps;
     const std::vector<double>& spectrum = verdict.directions.spectrum;
     const auto left = std::ranges::count_if(spectrum, [](double ratio) { return ratio > near && ratio < 1 / near; });
     if (!large && (!(evidence.groups.front().run.mean < 1 - 3 * verdict.limits.margin) ||

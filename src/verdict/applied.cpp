@@ -148,7 +148,8 @@ void add_degrees(const std::vector<double>& squares, const std::vector<Component
 void add_powers(const std::vector<double>& squares, std::vector<Candidate>& all) {
     const double factor =
         std::accumulate(squares.begin(), squares.end(), 0.0) / static_cast<double>(squares.size());
-    all.push_back({Candidate::Kind::factor, std::numeric_limits<int>::max(), false, "", [=](const SampledStep&, Eigen::VectorXd&, Eigen::MatrixXd& P) {
+    all.push_back({Candidate::Kind::factor, std::numeric_limits<int>::max(), false, "",
+                   [=](const SampledStep&, Eigen::VectorXd&, Eigen::MatrixXd& P) {
                        P *= factor;
                        return true;
                    }});
@@ -187,8 +188,8 @@ void add_shifts(std::vector<Candidate>& all) {
     add(&SampledStep::after, "the errors are as large as P of the step after says: is P a step late?");
 }
 
-/// In which order components may lie: two of them exchanged, the last ones first, the components of both halves in turn,
-/// or reversed.
+/// In which order components may lie: two of them exchanged, the last ones first, the components of both halves in
+/// turn, or reversed.
 std::set<std::vector<int>> orders_of(int n) {
     std::vector<int> own(static_cast<std::size_t>(n));
     std::iota(own.begin(), own.end(), 0);

@@ -93,7 +93,8 @@ Consistency judge_trials(const Evidence& evidence, const Limits& limits) {
 Consistency judge_survivors(const Evidence& evidence, const Limits& limits) {
     if (evidence.trials == 1 && !evidence.segments.count) {
         Consistency verdict = judge_single_run(evidence, limits);
-        const std::string written = verdict.looks_wrong() ? mix_up_of(evidence) : "", diverges = divergence_of(evidence);
+        const std::string written = verdict.looks_wrong() ? mix_up_of(evidence) : "",
+                          diverges = divergence_of(evidence);
         verdict.mix_up = !written.empty();
         if (verdict.mix_up || !diverges.empty()) verdict.hints.push_back(verdict.mix_up ? written : diverges);
         return verdict;

@@ -16,6 +16,14 @@ namespace credence {
 
 namespace {
 
+using Steps = std::vector<Moments>::const_iterator;
+
+/// The mean over some steps.
+double mean_of(Steps from, Steps to) {
+    return std::accumulate(from, to, 0.0, [](double sum, const Moments& step) { return sum + step.mean; }) /
+           static_cast<double>(to - from);
+}
+
 /// Errors of an angle beyond half a turn.
 std::string turns_of(const Evidence& evidence) {
     for (const BiasEvidence& component : evidence.bias)
@@ -45,7 +53,8 @@ std::string trend_of(const Evidence& evidence, const Limits& limits, bool at_sta
     };
     if (at_start && std::abs(first) > wrong && std::abs(last) < right && std::ranges::all_of(steps, smaller))
         return said("is P at the start that of the first errors, and are these small enough to linearise?");
-    if (!at_start && !innovations_are_right(evidence, limits) && last > wrong && std::abs(first) < std::max(right, last / 3))
+    if (!at_start && !innovations_are_right(evidence, limits) && last > wrong &&
+        std::abs(first) < std::max(right, last / 3))
         return said("do errors build up that P does not know of (bias, drift, delay, process noise)?");
     return {};
 }
@@ -58,19 +67,15 @@ std::string few_of(const Evidence& evidence, const Limits& limits) {
     if (!(excess > 3 * limits.margin) || state.coverage.empty()) return {};
     constexpr double most = 0.3;
     const auto middle = state.step.begin() + std::ssize(state.step) / 2;
-    const auto mean = [](auto from, auto to) {
-        return std::accumulate(from, to, 0.0, [](double sum, const Moments& step) { return sum + step.mean; }) /
-               static_cast<double>(to - from);
-    };
     if (state.step.size() > 1 &&
-        !(std::min(mean(state.step.begin(), middle), mean(middle, state.step.end())) > 1 + excess / 3))
+        !(std::min(mean_of(state.step.begin(), middle), mean_of(middle, state.step.end())) > 1 + excess / 3))
         return {};
     const double below = state.coverage.front().over_steps, median = coverage_levels[0],
                  by_factor = 1 - chi_square_p(stable_chi_square_quantile(median, state.dimension) / state.run.mean,
                                               state.dimension);
     if (!(median - below < most * (median - by_factor))) return {};
-    return formatted("NEES is below its median in %.0f %% of the steps, as it should be, and few steps carry what is too "
-                     "large: outliers%s? The worst are named",
+    return formatted("NEES is below its median in %.0f %% of the steps, as it should be, and few steps carry what is "
+                     "too large: outliers%s? The worst are named",
                      100 * below, evidence.trials == 1 ? "" : ", or a few trials that are wrong");
 }
 
@@ -88,8 +93,8 @@ std::string scale_of(const Evidence& evidence, const Consistency& verdict) {
                      std::max(factor, 1 / factor));
 }
 
-/// Innovations whose size and whose correlation are both off: a gain that is too small leaves the next innovation alike,
-/// one that is too large turns it back [Mehra 1970].
+/// Innovations whose size and whose correlation are both off: a gain that is too small leaves the next innovation
+/// alike, one that is too large turns it back [Mehra 1970].
 std::string noise_of(const Evidence& evidence, const Limits& limits) {
     if (evidence.nis.empty() || evidence.whiteness.empty() || evidence.groups.empty()) return {};
     const NisEvidence& nis = evidence.nis.front();
@@ -139,12 +144,8 @@ std::string divergence_of(const Evidence& evidence) {
     constexpr double many = 20;  // runs: one of them may have small errors at first by chance
     const bool are_many = state.step.front().count >= many;
     const auto some = std::max<std::ptrdiff_t>(1, std::ssize(state.step) / 5);
-    const auto mean = [](auto from, auto to) {
-        return std::accumulate(from, to, 0.0, [](double sum, const Moments& step) { return sum + step.mean; }) /
-               static_cast<double>(to - from);
-    };
-    const double first = mean(state.step.begin(), state.step.begin() + (are_many ? 1 : some)),
-                 last = mean(state.step.end() - some, state.step.end());
+    const double first = mean_of(state.step.begin(), state.step.begin() + (are_many ? 1 : some)),
+                 last = mean_of(state.step.end() - some, state.step.end());
     if (!(last > (are_many ? 3 : 10) * first)) return {};
     return formatted("the filter diverges, NEES/dim is %.2g at first and %.2g at last: is a Jacobian wrong, or does P "
                      "not know of a drift or of process noise? Finite differences show a wrong one (in C++ "
@@ -166,9 +167,9 @@ std::vector<std::string> causes_of(const Evidence& evidence, Consistency& verdic
         [&] { return offset_of(evidence); },
         [&] { return trend_of(evidence, limits, true); },
         [&] { return few_of(evidence, limits); },
-        [&] { return scale_of(evidence, verdict); },
         [&] { return noise_of(evidence, limits); },
-        [&] { return trend_of(evidence, limits, false); }};
+        [&] { return trend_of(evidence, limits, false); },
+        [&] { return scale_of(evidence, verdict); }};
     for (const auto& other : others)
         if (std::ranges::all_of(causes, &std::string::empty)) causes.push_back(other());
     std::erase(causes, "");

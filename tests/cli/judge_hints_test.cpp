@@ -128,12 +128,12 @@ TEST_CASE("judge: errors of the right size and wrong directions are asked for th
     const Json exchanged = write(0);
     CHECK(exchanged["verdict"] == "mixed");
     REQUIRE(exchanged["hints"].size() == 1);
-    CHECK_THAT(exchanged["hints"][0].get<std::string>(), Contains("are as large as P says of x0"));
+    CHECK_THAT(exchanged["hints"][0].get<std::string>(), Contains("are as large as P says of x1"));
     CHECK(exchanged["mix_up"] == true);
     const Json turned = write(0.8);
     CHECK(turned["verdict"] == "mixed");
     REQUIRE(turned["hints"].size() == 1);
-    CHECK_THAT(turned["hints"][0].get<std::string>(), Contains("is the error in the chart and frame and of the step of P"));
+    CHECK_THAT(turned["hints"][0].get<std::string>(), Contains("in the chart and frame and of the step of P"));
     CHECK(turned["mix_up"] == false);
     CHECK_FALSE(turned.contains("other_charts"));
 }
