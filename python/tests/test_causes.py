@@ -17,7 +17,8 @@ SCRIPT = Path(__file__).parents[2] / "experiments" / "verdict" / "causes.py"
 
 def script() -> Any:
     found = importlib.util.spec_from_file_location("causes", SCRIPT)
-    assert found is not None and found.loader is not None
+    assert found is not None
+    assert found.loader is not None
     module = importlib.util.module_from_spec(found)
     sys.modules["causes"] = module
     found.loader.exec_module(module)
@@ -43,6 +44,8 @@ def test_tune_is_offered_where_parameters_may_be_the_cause_and_not_after_a_mix_u
         return credence.judge(**fault.written(log), progress=False)
 
     noise, mixed_up = judged("R / 4"), judged("position and velocity exchanged")
-    assert noise.is_of_the_filter and "credence.tune(" in str(noise)
-    assert not mixed_up.is_of_the_filter and "credence.tune(" not in str(mixed_up)
+    assert noise.is_of_the_filter
+    assert "credence.tune(" in str(noise)
+    assert not mixed_up.is_of_the_filter
+    assert "credence.tune(" not in str(mixed_up)
     assert "are they exchanged?" in str(mixed_up)
