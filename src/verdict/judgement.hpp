@@ -35,7 +35,10 @@ public:
     void not_shown(const std::string& why, bool more_trials_help);
     void suspect(Suspicion suspicion);
     /// That P is larger than the errors of runs that are too few to find it so.
-    void withhold(const std::string& what) { not_shown(what, withheld_ = true); }
+    void withhold(const std::string& what) {
+        withheld_ = true;
+        not_shown(what, true);
+    }
 
     DirectionsFound directions;
 
