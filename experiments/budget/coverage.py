@@ -12,7 +12,7 @@ SCALES = np.array([1, 0.5, 0.1])
 DRAWS = {
     "normal": lambda rng, size: rng.normal(size=size),
     "Student's t₅": lambda rng, size: rng.standard_t(5, size=size) / np.sqrt(5 / 3),
-    "1 % of draws × 5": lambda rng, size: rng.normal(size=size) * np.where(rng.random(size) < 0.01, 5, 1) / 1.24**0.5,
+    "1 % of draws x 5": lambda rng, size: rng.normal(size=size) * np.where(rng.random(size) < 0.01, 5, 1) / 1.24**0.5,
 }
 
 

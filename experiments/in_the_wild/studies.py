@@ -12,7 +12,7 @@ SIMULATED = {"noise": "simulated"}
 ONE_FACTOR = "P is too small by a factor of about"
 DIRECTIONS = "pessimistic (directions): all"
 DROPPED = "that they are not correlated"
-OTHER_CHART = "their directions are wrong: is the error in the chart and frame and of the step of P, and is a correlation missing"
+OTHER_CHART = "their directions are wrong: is the error in the chart and frame and of the step of P"
 
 
 def radar(kind: str) -> Study:

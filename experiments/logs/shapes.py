@@ -576,7 +576,7 @@ def errors_in_mm_beside_m() -> Shape:
 @shape
 def errors_in_mm_of_sixty_runs() -> Shape:
     arrays = {"error": np.random.default_rng(77).normal(0, [20, 30], (60, 50, 2)), "covariance": np.diag([4e-4, 9e-4])}
-    return Shape(arrays, answer="failed", ends=".npz", hints=r"factor of about 1e.06: a scale")
+    return Shape(arrays, answer="failed", ends=".npz", hints=r"factor of about 1e.06 in every direction")
 
 
 @shape
@@ -668,7 +668,7 @@ def of_arcs(arcs: int, steps: int) -> Shape:
     P = np.diag([10.0, 120, 25]) @ np.array([[1, 0.4, 0], [0.4, 1, 0.1], [0, 0.1, 1]]) @ np.diag([10.0, 120, 25])
     error = np.random.default_rng(85).multivariate_normal(np.zeros(3), P, (arcs, steps))
     arrays = {"error": np.einsum("kij,rkj->rki", turn.as_matrix(), error), "covariance": P}
-    return Shape(arrays, answer="failed", ends=".npz", hints="is the error in the chart and frame of P")
+    return Shape(arrays, answer="failed", ends=".npz", hints="is the error in the chart and frame")
 
 
 for _arcs, _steps in ((50, 60), (200, 60), (1, STEPS)):

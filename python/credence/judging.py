@@ -32,9 +32,9 @@ def tune_hint(run: str = "run", free: str = "{...}", start: str = "") -> str:
 class Verdict(Printed):
     """The verdict on a filter, with everything that it rests on.
 
-    ``str(verdict)`` is the text that ``credence judge`` prints, and below it, if the filter is refuted by more than what
-    was written of it, the call that says what to change; a notebook shows its page. ``verdict[name]`` is an entry of
-    `json`, such as ``verdict["groups"]``.
+    ``str(verdict)`` is the text that ``credence judge`` prints, and below it, if the filter is refuted by more than
+    what was written of it, the call that says what to change; a notebook shows its page. ``verdict[name]`` is an entry
+    of `json`, such as ``verdict["groups"]``.
 
     Attributes
     ----------

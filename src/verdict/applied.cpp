@@ -256,7 +256,7 @@ void add_exchanges(const SampledSteps& sample, const std::vector<Component>& com
 }  // namespace
 
 std::string applied_cause(const SampledSteps& sample, const std::vector<Component>& components) {
-    if (sample.steps.empty()) return {};
+    if (sample.steps.empty() || components.empty()) return {};
     const auto is_correlated = [](const SampledStep& step) {
         return (step.P - Eigen::MatrixXd(step.P.diagonal().asDiagonal())).cwiseAbs().maxCoeff() > 0;
     };

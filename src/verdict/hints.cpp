@@ -163,6 +163,7 @@ std::vector<std::string> causes_of(const Evidence& evidence, Consistency& verdic
     verdict.mix_up = !causes.back().empty();
     const std::function<std::string()> others[] = {
         [&] { return turns_of(evidence); },
+        [&] { return doubt_chart(evidence, verdict); },
         [&] { return divergence_of(evidence); },
         [&] { return offset_of(evidence); },
         [&] { return trend_of(evidence, limits, true); },
@@ -183,11 +184,7 @@ void add_hints(const Evidence& evidence, Consistency& verdict) {
     if (verdict.looks_wrong())
         if (const std::string repeated = repeated_trials(evidence); !repeated.empty())
             verdict.hints.push_back(repeated);
-    std::vector<std::string> causes = causes_of(evidence, verdict);
-    if (verdict.looks_wrong() && !verdict.mix_up)
-        if (const std::string doubt = doubt_chart(evidence, verdict); causes.empty() && !doubt.empty())
-            causes.push_back(doubt);
-    std::ranges::copy(causes, std::back_inserter(verdict.hints));
+    std::ranges::copy(causes_of(evidence, verdict), std::back_inserter(verdict.hints));
 }
 
 }  // namespace credence

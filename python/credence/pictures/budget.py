@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import matplotlib
 import numpy as np
@@ -10,17 +10,14 @@ import numpy as np
 from . import style
 from .style import Picture
 
-if TYPE_CHECKING:
-    from ..budgeting import Budget
 
-
-def picture(budget: Budget) -> Picture:
-    """Bars of the contributions, with the whole error and what P says of it as lines."""
+def picture(budget: Any) -> Picture:
+    """Bars of the contributions of a Budget, with the whole error and what P says of it as lines."""
     with matplotlib.rc_context(style.PRINT):
         return _drawn(budget)
 
 
-def _drawn(budget: Budget) -> Picture:
+def _drawn(budget: Any) -> Picture:
     part = budget[budget.of]
     rows = part.contributions
     drawn, axes = style.one_panel(style.COLUMN, 30 + 9 * len(rows))

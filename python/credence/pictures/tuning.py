@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,9 +16,6 @@ from .._file import FloatArray
 from . import style
 from .style import Picture
 
-if TYPE_CHECKING:
-    from ..tuning import Estimate
-
 
 @dataclass(frozen=True)
 class Parameter:
@@ -27,7 +24,7 @@ class Parameter:
 
     name: str
     start: float
-    found: Estimate
+    found: Any  # an Estimate of credence.tuning
     is_log: bool
     curve: tuple[FloatArray, FloatArray]
     tried: FloatArray  # [point], its values where the search was
