@@ -48,7 +48,7 @@ def ask_what_fits(runs: Sequence[tuple[Poses, Poses]], manifold: str, chart: str
     ]  # fmt: skip
     as_read, best = found[0][0], min(apart for (_, apart), _, _ in found)
     (ratio, apart), (m, c), others = next(one for one in found if one[0][1] <= 1.3 * best)
-    if abs(np.log(ratio)) > 0.1 or apart > 0.5 or apart > 0.5 * as_read[1]:
+    if not 0.9 < ratio < 1.1 or apart > 0.5 or apart > 0.5 * as_read[1]:
         return False
     how = [f"{argument('manifold')} '{m}'" * (m != manifold), f"{argument('chart')} {c}" * (c != chart), *others]
     note(
