@@ -88,7 +88,8 @@ EquiprobableCells::EquiprobableCells(int degrees) {
 
 std::shared_ptr<const EquiprobableCells> equiprobable_cells(int degrees) {
     static std::mutex mutex;
-    static auto& kept = *new std::map<int, std::shared_ptr<const EquiprobableCells>>;  // of runs whose process exits, too
+    // A run in another thread needs them while the process exits.
+    static auto& kept = *new std::map<int, std::shared_ptr<const EquiprobableCells>>;
     const std::lock_guard lock(mutex);
     auto& cells = kept[degrees];
     if (!cells) cells = std::make_shared<const EquiprobableCells>(degrees);

@@ -6,8 +6,8 @@
 namespace credence {
 
 /// Throws RecordError naming what shows that the runs of `record` are not those of `first`: another seed, other names
-/// or units of components, other numbers of runs, steps or components, other `trial`, `truth`, `truth_covariance`, `time` or `steps`. What
-/// only one of them has shows nothing.
+/// or units of components, other numbers of runs, steps or components, other `trial`, `truth`, `truth_covariance`,
+/// `time` or `steps`. What only one of them has shows nothing.
 void require_same_runs(const RecordSource& first, const RecordSource& record);
 
 /// The steps, of all runs, at which records have results: none is compared by steps that it left out.

@@ -7,8 +7,8 @@
 namespace credence {
 
 const std::vector<std::string>& status_names() {
-    static const auto& names = *new std::vector<std::string>{"completed", "diverged", "covariance_not_positive_definite",
-                                                           "non_finite"};
+    static const auto& names = *new std::vector<std::string>{
+        "completed", "diverged", "covariance_not_positive_definite", "non_finite"};
     return names;
 }
 

@@ -5,6 +5,7 @@
 #include <credence/text.hpp>
 
 #include <algorithm>
+#include <string_view>
 
 namespace credence {
 
@@ -60,7 +61,7 @@ std::vector<NamedList> parse_lists(const ListEntries& entries, const Listed& of,
     for (const std::vector<std::string>& words : entries) {
         const std::string entry = joined(words, " ");
         if (words.size() < 2) throw RecordError(place, "broken entry " + quoted(entry), of.example, of.arrays);
-        require_group_name(words.front(), "group", place);
+        require_group_name(words.front(), place);
         NamedList list{words.front(), {}};
         for (std::size_t i = 1; i < words.size(); ++i) add_members(words[i], entry, of, place, list.members);
         if (std::ranges::any_of(lists, [&](const NamedList& other) { return other.name == list.name; }))
@@ -94,15 +95,33 @@ ComponentGroup group_of(const std::string& name, std::vector<int> members) {
     return group;
 }
 
-/// The name of a component is what its owner calls it: any text of one line that a list, a path and an option can hold.
-void require_group_name(const std::string& name, const std::string& what, const std::string& place) {
-    const bool is_text = what == "component" && !name.empty() && printable(name, name.size()) == name &&
-                         name.find_first_of(",/=\"'`\\") == std::string::npos;
-    if (!is_text && !names_something(name))
+namespace {
+
+/// Text of one line that a list, a path and an option can hold.
+bool is_line(const std::string& name) {
+    const auto is_unfit = [](unsigned char c) {
+        return c < 0x20 || c == 0x7f || std::string_view(",/=\"'`\\").find(static_cast<char>(c)) != std::string::npos;
+    };
+    return !name.empty() && is_utf8(name) && std::ranges::none_of(name, is_unfit);
+}
+
+void require_name(bool fits, const std::string& name, const std::string& what, const std::string& place) {
+    if (!fits)
         throw RecordError(place, quoted(name) + " is no name for a " + what, "Use letters, digits, _ and -");
     if (name == "all")
         throw RecordError(place, "`all` cannot name a " + what + ", because it stands for the whole",
                           "Leave that " + what + " out: the whole is judged anyway");
+}
+
+}  // namespace
+
+void require_group_name(const std::string& name, const std::string& place) {
+    require_name(names_something(name), name, "group", place);
+}
+
+/// It is what its owner calls it.
+void require_component_name(const std::string& name, const std::string& place) {
+    require_name(is_line(name), name, "component", place);
 }
 
 std::vector<ComponentGroup> parse_groups(const ListEntries& entries, int n, const std::string& place) {
@@ -146,7 +165,7 @@ std::vector<Component> read_components(const RecordSource& source, int n, const 
         if (!names.empty()) component.name = names[j];
         else if (defaults.empty()) component.name = "x" + std::to_string(j);
         if (!units.empty()) component.unit = units[j];
-        if (!names.empty()) require_group_name(component.name, "component", record_attribute_place("component_names"));
+        if (!names.empty()) require_component_name(component.name, record_attribute_place("component_names"));
         if (!units.empty() && (component.unit.empty() || component.unit.find_first_of(" \t\r\n") != std::string::npos))
             throw RecordError(record_attribute_place("component_units"), quoted(component.unit) + " is no unit",
                               "Write one word for each component, such as m/s, and 1 where it has no unit");

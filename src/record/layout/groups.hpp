@@ -27,7 +27,8 @@ std::vector<ComponentGroup> read_groups(const RecordSource& source, int n);
 /// units are empty.
 std::vector<Component> read_components(const RecordSource& source, int n, const std::vector<Component>& defaults);
 
-/// Throws where a name cannot be that of a group of components (`what`: `group`).
-void require_group_name(const std::string& name, const std::string& what, const std::string& place);
+/// Throw where a name cannot be that of a group of components, which is a word, or that of a component.
+void require_group_name(const std::string& name, const std::string& place);
+void require_component_name(const std::string& name, const std::string& place);
 
 }  // namespace credence

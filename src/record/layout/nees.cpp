@@ -42,7 +42,7 @@ void open_named(const RecordSource& source, RecordLayout& layout) {
             "with its dimension");
     shape.groups = {{"all", 0, 0}};
     for (const std::string& name : names) {
-        require_group_name(name, "group", record_place("group"));
+        require_group_name(name, record_place("group"));
         shape.groups.push_back({name, 0, 0});
     }
     set_sources(GroupSource::nees, layout);
