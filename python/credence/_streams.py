@@ -12,11 +12,6 @@ _NAMED, _NAMED_OTHER, _OTHER = 2**32 - 1, 2**32 - 2, 2**32 - 3  # no child of `s
 REST = "rest"  #: the source of what is drawn from the generator itself
 
 
-def _sequence_of(generator: np.random.BitGenerator) -> np.random.SeedSequence:
-    found: Any = getattr(generator, "seed_seq", None) or generator._seed_seq  # type: ignore[attr-defined]
-    return found  # type: ignore[no-any-return]
-
-
 class Streams(np.random.Generator):
     """The generator of a trial: NumPy's, with streams of their own by name, ``rng["measurement"]`` and
     ``rng["measurement", k]``.
@@ -33,8 +28,8 @@ class Streams(np.random.Generator):
 
     def __init__(self, sequence: np.random.SeedSequence, other: Collection[str] = ()) -> None:
         self._sequence, self._other = sequence, frozenset(other)
-        drawn = self._derived(_OTHER) if REST in self._other else sequence
-        super().__init__(np.random.Philox(drawn))
+        self._own = self._derived(_OTHER) if REST in self._other else sequence
+        super().__init__(np.random.Philox(self._own))
         self.streams: dict[tuple[str | int, ...], np.random.Generator] = {}
 
     def _derived(self, *key: int) -> np.random.SeedSequence:
@@ -54,8 +49,7 @@ class Streams(np.random.Generator):
         return self.streams[parts]
 
     def spawn(self, n_children: int) -> list[np.random.Generator]:
-        children = _sequence_of(self.bit_generator).spawn(n_children)
-        return [np.random.Generator(np.random.Philox(one)) for one in children]
+        return [np.random.Generator(np.random.Philox(one)) for one in self._own.spawn(n_children)]
 
     def other(self, sources: Collection[str]) -> Streams:
         """The generator of the same trial, with these sources drawn anew, as in an independent world."""
@@ -66,7 +60,7 @@ class Streams(np.random.Generator):
         found: dict[str, dict[tuple[int, ...], int]] = {}
         for (name, *numbers), stream in self.streams.items():
             found.setdefault(str(name), {})[tuple(map(int, numbers))] = _position(stream)
-        own = _position(self) + _sequence_of(self.bit_generator).n_children_spawned
+        own = _position(self) + self._own.n_children_spawned
         return found | ({REST: {(): own}} if own else {})
 
 

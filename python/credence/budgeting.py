@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import csv
+import functools
 import io
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -101,7 +102,7 @@ class _Errors:
     def __init__(self, simulation: Simulation, sources: Sequence[str], at: str) -> None:
         self.sources = sources
         arms = [simulation[name] for name in simulation.arms]
-        counted = np.all([self._counted(arm, simulation.trials) for arm in arms], axis=0)
+        counted = np.all([arm["status"] == 0 for arm in arms], axis=0)  # with a result, and not diverged
         self.left_out = int((~counted).sum())
         if counted.sum() < 2:
             why = f"{int(counted.sum())} of {simulation.trials} trials have a result in every one of {len(arms)} runs"
@@ -121,13 +122,6 @@ class _Errors:
         self.variance = None if covariance is None else self._taken(self._variances(covariance, count))
         if self.variance is not None and len(self.variance) > 1:
             self.variance = self.variance[counted[: len(self.variance)]]
-
-    @staticmethod
-    def _counted(arm: SimulatedArm, trials: int) -> Array:
-        """Whether each trial has a result and did not diverge."""
-        counted = np.zeros(trials, bool)
-        counted[np.arange(trials)] = arm["status"] == 0
-        return counted
 
     @staticmethod
     def _error(arm: SimulatedArm) -> Array:
@@ -409,7 +403,7 @@ def budget(
     if not callable(run):
         raise wrong("run", f"a {type(run).__name__} cannot be called", "Give a function of a generator")
     doors.needed("scipy.stats", "scipy", "give intervals")
-    function = _With(run, dict(options or {}))
+    function = functools.partial(run, **(options or {}))
     sources = _sources_of(function, seed, trials)
     arms: dict[str, dict[str, Any]] = {"a": {"other": ()}, "b": {"other": tuple(sources)}}
     for i, source in enumerate(sources):
@@ -418,13 +412,3 @@ def budget(
     worlds = _Worlds(function, sources)
     simulation = simulate(worlds, trials, seed=seed, arms=arms, executor=executor, progress=progress)
     return Budget(simulation, sources, of, at)
-
-
-class _With:
-    """A function with some of its arguments given, which other processes can import."""
-
-    def __init__(self, run: Callable[..., Any], options: dict[str, Any]) -> None:
-        self.run, self.options = run, options
-
-    def __call__(self, rng: Streams) -> Any:
-        return self.run(rng, **self.options)
