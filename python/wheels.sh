@@ -15,7 +15,7 @@ case $machine in
   aarch64) cross=yes compiler="g++-aarch64-linux-gnu qemu-user" ;;
   *) echo "usage: python/wheels.sh [aarch64]" >&2; exit 2 ;;
 esac
-install_missing $build_packages dpkg-dev ninja-build python3-venv $compiler
+install_missing $build_packages dpkg-dev python3-venv $compiler
 work=$PWD/build-wheels
 mkdir -p "$work"/{dist,sources,apt/{parts,lists/partial,archives/partial}} "$work/$machine/hdf5"
 pinned() { sed -n -E "/^($1)==/{s/ ;.*//;p}" python/requirements.txt; }

@@ -516,6 +516,29 @@ def two_filters_without_a_truth() -> Shape:
 
 
 @shape
+def a_table_without_a_word() -> Shape:
+    table = plain(73, "x_est y_est heading_est x_true y_true heading_true", P_x=0.04, P_y=0.02, P_heading=0.0009)
+    return Shape(table, "", "nothing says what its columns are", asks=True)
+
+
+@shape
+def a_table_of_errors_without_a_word() -> Shape:
+    table = plain(77).assign(track=1)
+    table = table.assign(ex=table.x - table.gx, ey=table.y - table.gy)[["track", "t", "ex", "ey", "sx", "sy"]]
+    return Shape(table, "", "Say --names error=ex,ey", asks=True)
+
+
+@shape
+def two_tables_without_a_word() -> Shape:
+    table = plain(79)
+    names = {"gx": "x", "gy": "y", "gh": "yaw"}
+    truth = table[["t", *names]].rename(columns=names)
+    table = table[["t", "x", "y", "h", "sx", "sy", "sh"]].rename(columns={"h": "yaw"})
+    table = table.rename(columns={"sx": "std_x", "sy": "std_y", "sh": "std_yaw"})
+    return Shape(table, "--truth truth.csv", "Say --names estimate=x,y,yaw", asks=True, files={"truth.csv": truth})
+
+
+@shape
 def two_filters_in_tables() -> Shape:
     tables = [plain(seed).rename(columns={"x": "a", "y": "b"}).drop(columns=["gx", "gy", "gh"]) for seed in (71, 72)]
     words = "--names estimate=a,b,h sigma=sx,sy,sh time=t angles=h --truth other.csv --pair"

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from credence._commands import command
-from credence._errors import Failure, InputError, argument, invalid
+from credence._errors import Failure, InputError, argument, invalid, printable
 from credence._names import joined, parted
 from credence._outputs import check_output, whole
 from credence._record import Record
@@ -159,6 +159,8 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
     if kind == "bag":
         topics = {"topic": given.topic, "truth_topic": given.truth_topic}
         return adapters.from_rosbag(given.log, given.truth, **topics, units=given.units, **poses)
+    if kind == "text" and not names and not given.map:
+        _refuse_table(given)
     if kind in ("text", "pos", "oem") and not names and not given.map and given.truth is None:
         raise InputError("poses need a truth. Give --truth FILE; or the columns of a table that has both (--names).")
     if kind == "oem":
@@ -181,6 +183,21 @@ def arguments_of(given: argparse.Namespace) -> dict[str, Any]:
         names |= {name: value for name in _of_tables if (value := getattr(given, name))}
         return _of_table(single, given, names, poses)
     return trajectories.from_files(given.log, given.truth, given.times, given.units, given.order, **poses)
+
+
+def _refuse_table(given: argparse.Namespace) -> None:
+    """Ask what the columns of a table are, and propose it where their names suggest it."""
+    from credence.adapters.named_columns import names_of
+    from credence.adapters.proposal import proposed
+
+    names = names_of(given.log[0])
+    if names:
+        words = proposed(names, names_of(given.truth[0]) if given.truth else None)
+        asked = f"{words}, if that is so" if words else "WHAT=NAME,… (docs/logs.md has all words), or --truth, too"
+        there = ", ".join(map(printable, names))
+        raise InputError(
+            f"{given.log[0]}: it is a table, and nothing says what its columns are ({there}). Say --names {asked}."
+        )
 
 
 def _of_table(

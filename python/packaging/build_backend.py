@@ -47,10 +47,11 @@ def _missing(settings: Settings) -> list[str]:
 def _requires(settings: Settings) -> list[str]:
     missing = _missing(settings)
     if missing:
-        packages = re.search('^build_packages="(.*)"', (TREE / "experiments/setup.sh").read_text(), re.MULTILINE)
+        packages = re.search('build_packages="([^"]*)"', (TREE / "experiments/setup.sh").read_text())
         assert packages is not None
+        named = " ".join(packages[1].split())
         sys.exit(f"credence needs {', '.join(missing)}, which cannot be found. On Debian and Ubuntu this installs all "
-                 f"that it needs, as root or with sudo:\n  apt-get install {packages[1]} python3-dev")  # fmt: skip
+                 f"that it needs, as root or with sudo:\n  apt-get install {named} python3-dev")  # fmt: skip
     tools = [name for name, tool in (("cmake>=3.22", "cmake"), ("ninja>=1.5", "ninja")) if shutil.which(tool) is None]
     return ["scikit-build-core>=1.1", "nanobind>=3.1", *tools]
 

@@ -36,7 +36,7 @@ def test_pip_names_what_is_missing_before_it_downloads_anything(tmp_path):
     assert done.returncode == 1
     said = done.stdout + done.stderr
     assert "credence needs a C++ compiler, which cannot be found." in said
-    assert "  apt-get install g++ cmake make libeigen3-dev libboost-program-options-dev libhdf5-dev" in said
+    assert "  apt-get install g++ cmake make ninja-build libeigen3-dev libboost-program-options-dev libhdf5-dev" in said
     assert said.count("127.0.0.1") == 1  # Looking in indexes: nothing was asked of it
     assert "Traceback" not in said
 

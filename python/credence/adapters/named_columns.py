@@ -19,15 +19,36 @@ _week = 604_800.0  # s
 _week_and_seconds = r"\s*(\d{1,4})\s+(\d{1,6}(?:\.\d*)?)\s*"
 
 
+def _parted_head(line: str) -> tuple[list[str], str]:
+    """The names in a line and what parts them: the one of commas, semicolons and tabs that is there most often."""
+    delimiter = max(",;\t", key=line.count)
+    return [name.strip() for name in next(csv.reader([line], delimiter=delimiter), [])], delimiter
+
+
+def names_of(path: Path) -> list[str]:
+    """The names of a table's columns, in its first line; none where that has a number or is a comment."""
+    with text_of(path) as encoding, open(path, newline="", encoding=encoding) as file:
+        line = file.readline()
+    names, _ = _parted_head(line)
+    is_named = len(names) > 1 and not line.startswith("#") and not any(map(_is_number, names))
+    return names if is_named else []
+
+
+def _is_number(value: Any) -> bool:
+    try:
+        float(value)
+    except (TypeError, ValueError):
+        return False
+    return True
+
+
 def _read_csv(path: Path) -> tuple[list[str], Any]:
     """The names in a file's first line, parted by commas, semicolons or tabs, and the frame below them."""
     pandas = needed("pandas", "pandas", "read tables")
     source = os.fspath(path)
     with text_of(path) as encoding:
         with open(path, newline="", encoding=encoding) as file:
-            head = file.readline().lstrip("#%")
-        delimiter = max(",;\t", key=head.count)
-        names = [name.strip() for name in next(csv.reader([head], delimiter=delimiter), [])]
+            names, delimiter = _parted_head(file.readline().lstrip("#%"))
         how = {"sep": delimiter, "encoding": encoding, "skipinitialspace": True, "float_precision": "round_trip"}
         try:
             with warnings.catch_warnings():
@@ -57,9 +78,7 @@ def _refuse_uneven(path: Path, encoding: str, delimiter: str, cells: int) -> Non
 def _first_text(values: Any) -> str | None:
     """Where the first cell that is no number stands, in a column that begins with numbers."""
     for row, value in enumerate(values):
-        try:
-            float(value)
-        except (TypeError, ValueError):
+        if not _is_number(value):
             what = f"row {row + 1} has {printable(str(value))}, which is no number. Leave a cell without one empty."
             return what if row else None
     return None
