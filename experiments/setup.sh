@@ -24,7 +24,8 @@ install_missing() {
   rm -f "$log"
 }
 
-build_packages="g++ cmake make libeigen3-dev libboost-program-options-dev libhdf5-dev libdeflate-dev nlohmann-json3-dev"
+build_packages="g++ cmake make ninja-build libeigen3-dev libboost-program-options-dev libhdf5-dev libdeflate-dev
+  nlohmann-json3-dev"
 test_packages="catch2 librandom123-dev hdf5-tools"
 
 # python_venv FOLDER REQUIREMENTS [WHAT…]: makes the Python environment FOLDER with WHAT and what the file REQUIREMENTS
@@ -87,5 +88,8 @@ build() {
 configure_and_build() {
   local directory=$1 target=$2
   shift 2
-  cmake -S . -B "$directory" -DCMAKE_UNITY_BUILD=ON "$@" && cmake --build "$directory" --target "$target" -j "$(nproc)"
+  # make waits for a library before it compiles what links it, which takes a fifth of the time on two cores.
+  local generator=()
+  [ -f "$directory/CMakeCache.txt" ] || generator=(-G Ninja)
+  cmake -S . -B "$directory" "${generator[@]}" -DCMAKE_UNITY_BUILD=ON "$@" && cmake --build "$directory" --target "$target" -j "$(nproc)"
 }

@@ -41,4 +41,4 @@ if cmake -S . -B "$work/missing" -DCMAKE_DISABLE_FIND_PACKAGE_Boost=ON -DCMAKE_D
 fi
 expect 'credence needs Boost, nlohmann_json, which CMake cannot find'
 source experiments/setup.sh
-expect "apt-get install $build_packages"
+expect "apt-get install $(echo $build_packages)"
