@@ -193,7 +193,11 @@ def _refuse_table(given: argparse.Namespace) -> None:
     names = names_of(given.log[0])
     if names:
         words = proposed(names, names_of(given.truth[0]) if given.truth else None)
-        asked = f"{words}, if that is so" if words else "WHAT=NAME,… (docs/logs.md has all words), or --truth, too"
+        asked = (
+            f"{words}, if that is so"
+            if words
+            else "WHAT=NAME,… (docs/logs.md has all words), and --truth FILE for a truth apart"
+        )
         there = ", ".join(map(printable, names))
         raise InputError(
             f"{given.log[0]}: it is a table, and nothing says what its columns are ({there}). Say --names {asked}."
