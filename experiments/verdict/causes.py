@@ -123,7 +123,7 @@ def kalman(random: np.random.Generator, runs: int, steps: int, of: Filter, F: Ca
             return x + np.stack([np.cos(x[:, 2]), np.sin(x[:, 2]), np.full(len(x), turn[2])], 1)
         return x @ F(x).T
 
-    x = np.tile(turn * 0.0, (runs, 1)) + (normal(P0) if n == 4 else 0)
+    x = np.tile(turn * 0.0, (runs, 1)) + (normal(P0) if n != 3 else 0)
     estimate = x + normal(P0) if n == 3 else np.zeros((runs, n))
     P = np.broadcast_to(of.p0 * P0, (runs, n, n)).copy()
     bias = of.bias * normal(R)
