@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 import causes
 import numpy as np
-from causes import DEGREES, Array, Fault, Filter, Log, given, scaled, with_error, with_P
+from causes import DEGREES, Array, Fault, Filter, Log, scaled, with_error, with_P
 
 SCALE = 1000.0  # mm
 FLAT = slice(0, 3)

@@ -32,7 +32,7 @@ std::vector<const Column*> shown(const std::vector<Column>& columns) {
     std::vector<const Column*> found;
     for (const Column& column : columns)
         if (is_shown(column)) found.push_back(&column);
-    std::ranges::stable_partition(found, [](const Column* column) { return !column->places.sweep_pairs; });
+    std::stable_partition(found.begin(), found.end(), [](const Column* column) { return !column->places.sweep_pairs; });
     return found;
 }
 

@@ -197,7 +197,7 @@ std::set<std::vector<int>> orders_of(int n) {
     if (n > most_exchanged) return orders;
     for (std::size_t i = 0; i < own.size(); ++i) {
         std::vector<int> order = own;
-        std::ranges::rotate(order, order.begin() + static_cast<std::ptrdiff_t>(i));
+        std::rotate(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(i), order.end());
         orders.insert(order);
         for (std::size_t j = 0; j < i; ++j) {
             order = own;

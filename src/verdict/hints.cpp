@@ -59,24 +59,27 @@ std::string trend_of(const Evidence& evidence, const Limits& limits, bool at_sta
     return {};
 }
 
-/// Few steps are wrong, in either half of the runs, and the others are not: the median of NEES is far nearer to that of
-/// chi-square than by a factor on P.
+/// How far the median of NEES is from that of chi-square, as a share of where a factor on P would take it.
+double share_of_factor(const GroupEvidence& state) {
+    const double median = coverage_levels[0],
+                 by_factor = 1 - chi_square_p(stable_chi_square_quantile(median, state.dimension) / state.run.mean,
+                                              state.dimension);
+    return (median - state.coverage.front().over_steps) / (median - by_factor);
+}
+
+/// Few steps are wrong, in either half of the runs, and the others are not: their NEES has nearly the right median.
 std::string few_of(const Evidence& evidence, const Limits& limits) {
     const GroupEvidence& state = evidence.groups.front();
     const double excess = state.run.mean - 1;
     if (!(excess > 3 * limits.margin) || state.coverage.empty()) return {};
-    constexpr double most = 0.3;
     const auto middle = state.step.begin() + std::ssize(state.step) / 2;
     if (state.step.size() > 1 &&
         !(std::min(mean_of(state.step.begin(), middle), mean_of(middle, state.step.end())) > 1 + excess / 3))
         return {};
-    const double below = state.coverage.front().over_steps, median = coverage_levels[0],
-                 by_factor = 1 - chi_square_p(stable_chi_square_quantile(median, state.dimension) / state.run.mean,
-                                              state.dimension);
-    if (!(median - below < most * (median - by_factor))) return {};
+    if (!(share_of_factor(state) < 0.3)) return {};
     return formatted("NEES is below its median in %.0f %% of the steps, as it should be, and few steps carry what is "
                      "too large: outliers%s? The worst are named",
-                     100 * below, evidence.trials == 1 ? "" : ", or a few trials that are wrong");
+                     100 * state.coverage.front().over_steps, evidence.trials == 1 ? "" : ", or a few trials that are wrong");
 }
 
 /// All directions are off by nearly one factor: it is beyond three margins, and they differ little, and less than it.
@@ -100,9 +103,12 @@ std::string noise_of(const Evidence& evidence, const Limits& limits) {
     const NisEvidence& nis = evidence.nis.front();
     const Whiteness& lag = evidence.whiteness.front();
     const Side side = side_of(nis.ratio95, limits.margin);
-    const bool errors_agree = (evidence.groups.front().run.mean > 1) == (side == Side::above);
+    const GroupEvidence& state = evidence.groups.front();
+    const bool errors_agree = (state.run.mean > 1) == (side == Side::above);
     if (side == Side::inside || !errors_agree || !(std::abs(lag.scaled) > lag.simultaneous_bound)) return {};
     const bool alike = lag.scaled > 0;
+    // An outlier turns the innovations back, too.
+    if (!alike && side == Side::above && !state.coverage.empty() && share_of_factor(state) < 0.6) return {};
     return formatted("the innovations are %s than S says (NIS/m %.2f) and ", side == Side::above ? "larger" : "smaller",
                      nis.ratio) +
            (alike ? "alike from one to the next: " : "turn back from one to the next: ") +

@@ -112,10 +112,11 @@ std::map<std::string, int> fill(Draft& draft, SweepPoint& sweep, const std::vect
         at_place(place(origin, one.line), [&] { set(draft, sweep, one.key, one.value); });
         lines[one.key] = one.line;
     }
-    for (const auto& [key, value] : overrides) {
-        if (key == world_key) continue;
-        at_place(as_option("set", printable(key)), [&] { set(draft, sweep, key, trimmed(value)); });
-        lines.erase(key);
+    for (const auto& given : overrides) {
+        if (given.first == world_key) continue;
+        at_place(as_option("set", printable(given.first)),
+                 [&] { set(draft, sweep, given.first, trimmed(given.second)); });
+        lines.erase(given.first);
     }
     return lines;
 }

@@ -82,7 +82,7 @@ std::size_t largest_part_count(const ArmResults& arm, const std::vector<SeriesTo
 
 void write_series(const Handle& group, const EvidenceDimensions& of, const Series& series,
                   const SeriesTotals& totals) {
-    const auto& [step, part, level] = of;
+    const hdf5::Dimension &step = of.step, &part = of.part, &level = of.level;
     const std::string total = series.long_name + ": total over the counted trials", square = squared_unit(series.unit);
     const auto write_parts = [&](const std::string& suffix, const std::vector<ExactSum>& sums,
                                  const hdf5::Dimensions& dimensions, const hdf5::Description& description) {
