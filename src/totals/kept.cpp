@@ -73,7 +73,7 @@ std::int64_t totals_size(const ScenarioResults& results, std::int64_t detailed) 
 void load_totals(ScenarioResults& results) {
     if (has_totals(results)) return;
     ScenarioResults there = without_blocks(results);
-    if (results.kept_totals) results.kept_totals->load(there);
+    if (results.kept_totals) (*results.kept_totals)(there);
     set_blocks(there, results.blocks, trials_up_to(results));
     for (std::size_t a = 0; a < results.arms.size(); ++a) {
         ArmResults &to = results.arms[a], &from = there.arms[a];

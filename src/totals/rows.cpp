@@ -33,7 +33,7 @@ void move_rows(std::vector<double>& values, const std::vector<Move>& moves, std:
 }  // namespace
 
 std::vector<double> ArmColumns::values(std::size_t column, std::int64_t first, std::int64_t count) const {
-    if (kept_) return kept_->values(column, first, count);
+    if (kept_) return (*kept_)(column, first, count);
     const auto from = in_memory_[column].begin() + first;
     return {from, from + count};
 }

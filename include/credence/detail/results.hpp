@@ -7,6 +7,7 @@
 #include <credence/detail/totals.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -23,14 +24,9 @@ enum class Keep {
 /// `trials`, `aggregates`
 std::string keep_name(Keep keep);
 
-/// Columns of one arm that are kept in a file, because they may exceed the memory.
-class KeptColumns {
-public:
-    virtual ~KeptColumns() = default;
-    /// The values of rows first ... first + count - 1, which must exist. Throws InputError or Failure where the file
-    /// cannot provide them.
-    virtual std::vector<double> values(std::size_t column, std::int64_t first, std::int64_t count) const = 0;
-};
+/// Columns of one arm that are kept in a file, because they may exceed the memory: the values of rows first ... first +
+/// count - 1 of a column, which must exist. Throws InputError or Failure where the file cannot provide them.
+using KeptColumns = std::function<std::vector<double>(std::size_t column, std::int64_t first, std::int64_t count)>;
 
 /// The columns of one arm: one number a trial, in memory or in a file. Who reads them need not know where they are.
 class ArmColumns {
@@ -55,14 +51,10 @@ private:
 
 struct ScenarioResults;
 
-/// Totals and details of a scenario that are kept in a file, because those of all scenarios may exceed the memory.
-class KeptTotals {
-public:
-    virtual ~KeptTotals() = default;
-    /// Fills `results`, which has no block and totals of 0, with the kept blocks and their totals and details. Throws
-    /// InputError or Failure where the file cannot provide them.
-    virtual void load(ScenarioResults& results) const = 0;
-};
+/// Totals and details of a scenario that are kept in a file, because those of all scenarios may exceed the memory:
+/// fills `results`, which has no block and totals of 0, with the kept blocks and their totals and details. Throws
+/// InputError or Failure where the file cannot provide them.
+using KeptTotals = std::function<void(ScenarioResults& results)>;
 
 /// One arm of a scenario: its totals, and what is kept of its trials: all of their columns, details of the first ones.
 struct ArmResults {

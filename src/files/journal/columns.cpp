@@ -8,36 +8,8 @@
 
 namespace credence {
 
-namespace {
-
-/// An arm's columns whose values are in the journal, in the results file that the journal extends, or in both.
-class ColumnsOfRun : public KeptColumns {
-public:
-    ColumnsOfRun(const Journal& journal, std::size_t scenario, std::size_t arm)
-        : journal_(journal), scenario_(scenario), arm_(arm) {}
-    std::vector<double> values(std::size_t column, std::int64_t first, std::int64_t count) const override {
-        return journal_.values(scenario_, arm_, column, first, count);
-    }
-
-private:
-    const Journal& journal_;
-    std::size_t scenario_, arm_;
-};
-
-/// A scenario's totals and details, stored likewise.
-class TotalsOfRun : public KeptTotals {
-public:
-    TotalsOfRun(const Journal& journal, std::size_t scenario) : journal_(journal), scenario_(scenario) {}
-    void load(ScenarioResults& results) const override { journal_.load_totals(scenario_, results); }
-
-private:
-    const Journal& journal_;
-    std::size_t scenario_;
-};
-
-}  // namespace
-
-/// Makes the study read its columns, if trials are kept, from the journal, and likewise totals that are not in memory.
+/// Makes the study read its columns, if trials are kept, and totals that are not in memory: their values are in the
+/// journal, in the results file that it extends, or in both.
 void Journal::keep(Study& study) {
     kept_.clear();
     computed_by_ = study.computed_by;
@@ -46,10 +18,14 @@ void Journal::keep(Study& study) {
         Kept kept{
             BlockLayout(results), kept_types(results), {}, results.kept_totals, {}, results.trials, {}, {}, {}, {}};
         kept.placed = places_in_file(results, kept.layout);
-        results.kept_totals = std::make_shared<TotalsOfRun>(*this, s);
+        results.kept_totals = std::make_shared<KeptTotals>(
+            [this, s](ScenarioResults& loaded) { load_totals(s, loaded); });
         for (std::size_t a = 0; a < results.arms.size() && results.keep == Keep::trials; ++a) {
             kept.in_file.push_back(results.arms[a].columns.kept());
-            results.arms[a].columns.keep(std::make_shared<ColumnsOfRun>(*this, s, a));
+            results.arms[a].columns.keep(std::make_shared<KeptColumns>(
+                [this, s, a](std::size_t column, std::int64_t first, std::int64_t count) {
+                    return values(s, a, column, first, count);
+                }));
         }
         kept_.push_back(std::move(kept));
     }
@@ -91,7 +67,7 @@ std::vector<double> Journal::values(std::size_t scenario, std::size_t arm, std::
         const std::int64_t skip = row % block_size, left = first + count - row;
         if (place.in_file) {
             some = rows_in_file(kept, at, skip, left);
-            const std::vector<double> read = kept.in_file[arm]->values(column, place.position + skip, some);
+            const std::vector<double> read = (*kept.in_file[arm])(column, place.position + skip, some);
             values.insert(values.end(), read.begin(), read.end());
         } else {
             some = std::min(place.trials - skip, left);

@@ -50,7 +50,7 @@ void Journal::read_details(std::size_t scenario, ScenarioResults& results) const
 
 void Journal::load_totals(std::size_t scenario, ScenarioResults& results) const {
     const Kept& kept = kept_[scenario];
-    if (kept.totals_in_file) kept.totals_in_file->load(results);
+    if (kept.totals_in_file) (*kept.totals_in_file)(results);
     if (!kept.totals.found()) return;
     set_blocks(results, kept.placed.blocks, kept.placed.trials_up_to());
     const std::string bytes = file_.read(kept.totals.position, kept.totals.size);

@@ -3,15 +3,151 @@
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 
-#include "files/merge/scenario.hpp"
 #include "study/block_results.hpp"
 #include "study/releases.hpp"
 
-#include <utility>
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
 
 namespace credence {
 
 namespace {
+
+/// One arm's columns, with rows from several files.
+struct GatheredColumns {
+    /// Maps rows from `begin` on here to rows from `first` on there.
+    struct Span {
+        std::shared_ptr<const KeptColumns> source;
+        std::int64_t begin, first, rows;
+    };
+    std::vector<Span> spans;
+
+    void add(const std::shared_ptr<const KeptColumns>& source, std::int64_t first, std::int64_t rows) {
+        const std::int64_t begin = spans.empty() ? 0 : spans.back().begin + spans.back().rows;
+        if (!spans.empty() && spans.back().source == source && spans.back().first + spans.back().rows == first)
+            spans.back().rows += rows;
+        else
+            spans.push_back({source, begin, first, rows});
+    }
+
+    std::vector<double> operator()(std::size_t column, std::int64_t first, std::int64_t count) const {
+        std::vector<double> values;
+        auto span = std::upper_bound(spans.begin(), spans.end(), first, [](std::int64_t row, const Span& other) {
+            return row < other.begin + other.rows;
+        });
+        for (; count > 0; ++span) {
+            const std::int64_t skip = first - span->begin, some = std::min(count, span->rows - skip);
+            const std::vector<double> read = (*span->source)(column, span->first + skip, some);
+            values.insert(values.end(), read.begin(), read.end());
+            first += some;
+            count -= some;
+        }
+        return values;
+    }
+};
+
+/// A file's part of a scenario.
+struct Part {
+    std::size_t file;
+    BlockRanges blocks;
+    std::vector<std::shared_ptr<const KeptColumns>> columns;  ///< by arm
+    std::shared_ptr<const KeptTotals> totals;
+
+    /// Its totals and details, of a study of `trials` trials.
+    ScenarioResults loaded(const ScenarioResults& like, std::int64_t trials) const {
+        ScenarioResults from = results_without_totals(like.scenario, like.keep);
+        from.kept_totals = totals;
+        for (std::size_t a = 0; a < from.arms.size(); ++a) from.arms[a].columns.keep(columns[a]);
+        set_blocks(from, blocks, trials);
+        load_totals(from);
+        return from;
+    }
+};
+
+/// Totals and details of the files, read from these one after the other when they are loaded.
+KeptTotals merged_totals(const std::vector<Part>& parts, std::int64_t trials) {
+    return [=](ScenarioResults& results) {
+        for (const Part& part : parts) {
+            const ScenarioResults from = part.loaded(results, trials);
+            for (std::size_t a = 0; a < from.arms.size(); ++a) add_totals(results.arms[a], from.arms[a]);
+            BlockRanges blocks = results.blocks;
+            blocks.add(part.blocks);
+            set_blocks(results, std::move(blocks), trials);
+            for (const std::int64_t block : part.blocks) {
+                if (first_row(results, block).value() >= results.detailed()) break;
+                copy_details(results, from, block);
+            }
+        }
+    };
+}
+
+/// One scenario of the study, collected from files of which no two have the same block.
+class ScenarioMerger {
+public:
+    /// This scenario of a study of `trials` trials.
+    ScenarioMerger(const ScenarioResults& like, std::int64_t trials)
+        : trials_(trials), results_(results_without_totals(like.scenario, like.keep)) {
+        for (ArmResults& arm : results_.arms) arm.columns = {};  // they stay in the files
+    }
+
+    /// A block that is in a file already.
+    struct Shared {
+        std::int64_t block;
+        std::size_t file;
+    };
+    /// The first of these blocks that is in a file already.
+    std::optional<Shared> shared(const BlockRanges& blocks) const {
+        const BlockRanges again = blocks.common(results_.blocks);
+        for (const Part& part : parts_)
+            if (!again.empty() && part.blocks.contains(again.front())) return Shared{again.front(), part.file};
+        return std::nullopt;
+    }
+
+    void add(const ScenarioResults& from, std::size_t file) {
+        Part part{file, from.blocks, {}, from.kept_totals};
+        for (const ArmResults& arm : from.arms) part.columns.push_back(arm.columns.kept());
+        if (results_.keep == Keep::trials)
+            for (const std::int64_t block : from.blocks)
+                places_[block] = {parts_.size(), first_row(from, block).value(), trials_in_block(trials_, block)};
+        parts_.push_back(std::move(part));
+        BlockRanges blocks = results_.blocks;
+        blocks.add(from.blocks);
+        set_blocks(results_, std::move(blocks), trials_);
+    }
+
+    /// Leaves the columns in the files, and totals that are too large for `in_memory`. Throws InputError where a file
+    /// contradicts itself.
+    ScenarioResults merged(TotalsInMemory& in_memory) {
+        results_.kept_totals = std::make_shared<KeptTotals>(merged_totals(parts_, trials_));
+        for (std::size_t a = 0; a < results_.arms.size() && results_.keep == Keep::trials; ++a) {
+            GatheredColumns gathered;
+            for (const auto& [block, place] : places_)
+                gathered.add(parts_[place.part].columns[a], place.row, place.trials);
+            results_.arms[a].columns.keep(std::make_shared<KeptColumns>(std::move(gathered)));
+        }
+        in_memory.load(results_);
+        // A file that contradicts itself is found before anything is written.
+        if (!has_totals(results_) && results_.keep == Keep::aggregates) {
+            load_totals(results_);
+            drop_totals(results_);
+        }
+        return std::move(results_);
+    }
+
+private:
+    /// The place of a block: which of the files it is in, its first row there, and its trials.
+    struct Found {
+        std::size_t part;
+        std::int64_t row, trials;
+    };
+
+    std::int64_t trials_;
+    ScenarioResults results_;
+    std::vector<Part> parts_;
+    std::map<std::int64_t, Found> places_;  ///< of blocks with columns
+};
 
 /// Throws unless the file is of the same study as the first one.
 void check_same_study(const Study& first, const Study& other, const std::vector<std::string>& paths, std::size_t file,

@@ -48,31 +48,6 @@ std::vector<double> read_rows(const Dataset& dataset, ColumnType type, const Che
     return as_stored(type, [&]<class T>(T) { return read_rows<T>(dataset, sums, first, count); });
 }
 
-/// The columns of an arm, in a file that stays open for them.
-class ColumnsOfFile : public KeptColumns {
-public:
-    ColumnsOfFile(std::shared_ptr<const Handle> file, std::string path, std::string group, std::vector<Column> columns,
-                  std::vector<Checksums> sums)
-        : file_(std::move(file)),
-          path_(std::move(path)),
-          group_(std::move(group)),
-          columns_(std::move(columns)),
-          sums_(std::move(sums)) {}
-
-    std::vector<double> values(std::size_t column, std::int64_t first, std::int64_t count) const override {
-        return hdf5::translated(path_, another_copy, [&] {
-            const Dataset dataset(hdf5::open_group(*file_, group_), columns_[column].name);
-            return read_rows(dataset, columns_[column].type, sums_[column], first, count);
-        });
-    }
-
-private:
-    std::shared_ptr<const Handle> file_;
-    std::string path_, group_;
-    std::vector<Column> columns_;
-    std::vector<Checksums> sums_;  ///< by column
-};
-
 template <class T>
 CheckedColumn check(const Dataset& dataset) {
     CheckedColumn column;
@@ -137,8 +112,13 @@ CheckedColumn check_column(const Handle& group, const Column& column, std::int64
 
 std::shared_ptr<const KeptColumns> columns_of_file(std::shared_ptr<const Handle> file, const std::string& path,
                                                    const std::string& group, const std::vector<Column>& columns,
-                                                   std::vector<Checksums> sums) {
-    return std::make_shared<ColumnsOfFile>(std::move(file), path, group, columns, std::move(sums));
+                                                   const std::vector<Checksums>& sums) {
+    return std::make_shared<KeptColumns>([=](std::size_t column, std::int64_t first, std::int64_t count) {
+        return hdf5::translated(path, another_copy, [&] {
+            const Dataset dataset(hdf5::open_group(*file, group), columns[column].name);
+            return read_rows(dataset, columns[column].type, sums[column], first, count);
+        });
+    });
 }
 
 BlockRanges read_blocks(const Handle& group, std::int64_t asked) {

@@ -31,7 +31,7 @@ CheckedColumn check_column(const hdf5::Handle& group, const Column& column, std:
 /// where the values have others now.
 std::shared_ptr<const KeptColumns> columns_of_file(std::shared_ptr<const hdf5::Handle> file, const std::string& path,
                                                    const std::string& group, const std::vector<Column>& columns,
-                                                   std::vector<std::vector<std::uint32_t>> sums);
+                                                   const std::vector<std::vector<std::uint32_t>>& sums);
 
 /// The blocks of the trials in an arm's group, of a study that was asked for `asked`. Throws where a block is not
 /// complete, except for the study's last.

@@ -135,29 +135,21 @@ void read_totals(const Handle& group, const ScenarioResults& results, ArmResults
 }
 
 /// The totals and details of a scenario, in a file that stays open for them.
-class TotalsOfFile : public KeptTotals {
-public:
-    TotalsOfFile(const Opened& source, const ScenarioResults& results) : source_(source), blocks_(results.blocks) {
-        for (const ArmResults& arm : results.arms) of_trials_.push_back(arm.totals.trials);
-    }
-
-    void load(ScenarioResults& results) const override {
-        set_blocks(results, blocks_, source_.asked);
-        hdf5::translated(source_.path, another_copy, [&] {
-            const Handle scenario = hdf5::open_group(*source_.file, results.scenario.name);
-            for (std::size_t a = 0; a < results.arms.size(); ++a) {
-                ArmResults& arm = results.arms[a];
-                arm.totals.trials = of_trials_[a];
-                read_totals(hdf5::open_group(scenario, arm.name), results, arm);
+KeptTotals totals_of_file(const Opened& source, const ScenarioResults& results) {
+    std::vector<TrialTotals> of_trials;  // by arm
+    for (const ArmResults& arm : results.arms) of_trials.push_back(arm.totals.trials);
+    return [source, of_trials, blocks = results.blocks](ScenarioResults& loaded) {
+        set_blocks(loaded, blocks, source.asked);
+        hdf5::translated(source.path, another_copy, [&] {
+            const Handle scenario = hdf5::open_group(*source.file, loaded.scenario.name);
+            for (std::size_t a = 0; a < loaded.arms.size(); ++a) {
+                ArmResults& arm = loaded.arms[a];
+                arm.totals.trials = of_trials[a];
+                read_totals(hdf5::open_group(scenario, arm.name), loaded, arm);
             }
         });
-    }
-
-private:
-    Opened source_;
-    BlockRanges blocks_;
-    std::vector<TrialTotals> of_trials_;  ///< by arm
-};
+    };
+}
 
 /// Reads from the first arm which trials are present; the others must agree.
 ArmResults read_arm(const Handle& scenario_group, const std::string& name, ScenarioResults& results,
@@ -200,7 +192,7 @@ ScenarioResults read_scenario_results(const std::string& name, const Opened& sou
     check_sweep(group, scenario.sweep);
     require_links(group, scenario.arms);
     for (const std::string& arm : scenario.arms) results.arms.push_back(read_arm(group, arm, results, source));
-    results.kept_totals = std::make_shared<TotalsOfFile>(source, results);
+    results.kept_totals = std::make_shared<KeptTotals>(totals_of_file(source, results));
     return results;
 }
 
