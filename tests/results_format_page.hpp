@@ -5,7 +5,7 @@
 #include <credence/text.hpp>
 
 #include "files/hdf5/read.hpp"
-#include "files/results/links.hpp"
+#include "files/results/parts.hpp"
 
 #include <hdf5_hl.h>
 

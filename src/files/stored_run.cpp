@@ -3,8 +3,8 @@
 #include <credence/error.hpp>
 
 #include "base/wording.hpp"
-#include "files/results/links.hpp"
 #include "files/journal/journal.hpp"
+#include "files/results/parts.hpp"
 #include "files/system/system_file.hpp"
 #include "study/block_results.hpp"
 

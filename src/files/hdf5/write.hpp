@@ -7,7 +7,15 @@
 
 #include <algorithm>
 
+namespace credence {
+class ByteFile;
+}
+
 namespace credence::hdf5 {
+
+/// A new HDF5 file, readable by every release from 1.8 on, whose bytes are written to `bytes`, which must outlive it.
+/// After closing it, check `bytes` for an error.
+Handle new_file(ByteFile& bytes);
 
 /// The attributes that every variable has.
 struct Description {

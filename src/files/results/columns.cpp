@@ -1,6 +1,5 @@
-#include "files/results/columns.hpp"
-
 #include "files/results/format.hpp"
+#include "files/results/parts.hpp"
 
 #include <algorithm>
 
@@ -122,8 +121,7 @@ std::shared_ptr<const KeptColumns> columns_of_file(std::shared_ptr<const Handle>
 }
 
 BlockRanges read_blocks(const Handle& group, std::int64_t asked) {
-    const Dataset dataset(group, "trial");
-    if (dataset.extents().size() != 1) throw Error(dataset.place(), "is not a list of numbers");
+    const Dataset dataset = open_list(group, "trial");
     BlockReader reader(asked);
     dataset.read_parts<std::int64_t>([&](const std::vector<std::int64_t>& trials) {
         for (const std::int64_t trial : trials) reader.add(trial);

@@ -1,15 +1,13 @@
-#include "base/nan.hpp"
-#include "base/text_stream.hpp"
-#include "files/results/declared.hpp"
-
 #include <credence/ini.hpp>
-#include "scenario/state_series.hpp"
 #include <credence/detail/own_simulation.hpp>
 #include <credence/detail/worlds.hpp>
 #include <credence/text.hpp>
 
-#include "files/results/links.hpp"
+#include "base/nan.hpp"
+#include "base/text_stream.hpp"
+#include "files/results/parts.hpp"
 #include "record/layout/groups.hpp"
+#include "scenario/state_series.hpp"
 
 #include <algorithm>
 #include <optional>

@@ -1,12 +1,8 @@
-#include "files/results/evidence.hpp"
-
-#include "numeric/chi_square.hpp"
-
 #include "files/results/format.hpp"
-#include "files/results/sums.hpp"
+#include "files/results/parts.hpp"
 
 #include <algorithm>
-#include <numeric>
+#include <limits>
 
 namespace credence {
 
@@ -58,7 +54,7 @@ void write_detailed_moments(const Handle& group, const hdf5::Dimension& detailed
     const Handle moments =
         hdf5::new_variable(group, moments_name, values, {&detailed, &moment},
                            {"means and sums over the steps of standardised errors and covariances", "1"});
-    hdf5::write_numbers<double>(moments, "_FillValue", {one_nan(NAN)});
+    hdf5::write_numbers<double>(moments, "_FillValue", {one_nan(nan)});
     moment.close();
 }
 

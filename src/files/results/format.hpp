@@ -5,14 +5,12 @@
 #include <credence/detail/store.hpp>
 #include <credence/text.hpp>
 
-#include "files/system/durable_file.hpp"
-#include "files/hdf5/driver.hpp"
-#include "files/hdf5/write.hpp"
 #include "base/nan.hpp"
-#include "files/results/sweep.hpp"
+#include "files/hdf5/write.hpp"
+#include "files/system/byte_file.hpp"
+#include "files/system/durable_file.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace credence {
 
@@ -65,6 +63,13 @@ inline std::string groups_text(const std::vector<ComponentGroup>& groups) {
         if (group.name != "all") texts.push_back(group.name + " " + components_text(group));
     return joined(texts);
 }
+
+/// A scenario's place in a sweep as attributes of its group, for readers that do not parse the scenario's text:
+/// `sweep_of`, `sweep_keys` and `sweep.KEY` for every key, as a number where the value is one, else as text; none where
+/// the scenario is not a point of a sweep.
+void write_sweep(const hdf5::Handle& group, const SweepPoint& point);
+/// Throws hdf5::Error unless the group has exactly these attributes.
+void check_sweep(const hdf5::Handle& group, const SweepPoint& point);
 
 inline hdf5::Handle new_scenario_group(const hdf5::Handle& root, const Scenario& scenario) {
     hdf5::Handle group = hdf5::new_group(root, scenario.name);

@@ -1,9 +1,6 @@
-#include "files/results/links.hpp"
+#include "files/results/parts.hpp"
 
 #include <credence/error.hpp>
-
-#include "files/results/trial_totals.hpp"
-#include "files/results/evidence.hpp"
 
 #include <algorithm>
 

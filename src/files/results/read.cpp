@@ -2,18 +2,11 @@
 
 #include <credence/text.hpp>
 
-#include "files/hdf5/read.hpp"
-#include "files/results/columns.hpp"
-#include "files/results/declared.hpp"
-#include "files/results/evidence.hpp"
 #include "files/results/format.hpp"
-#include "files/results/links.hpp"
-#include "files/results/sums.hpp"
-#include "files/results/trial_totals.hpp"
+#include "files/results/parts.hpp"
 #include "study/releases.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -24,7 +17,6 @@ namespace {
 
 using hdf5::Dataset;
 using hdf5::Error;
-using hdf5::Extents;
 using hdf5::Handle;
 
 /// Throws unless the group holds exactly the expected members.
@@ -37,16 +29,6 @@ void require_links(const Handle& group, std::vector<std::string> expected) {
     std::set_difference(found.begin(), found.end(), expected.begin(), expected.end(), std::back_inserter(foreign));
     if (!missing.empty()) throw Error(hdf5::place_of(group, missing.front()), "is missing");
     if (!foreign.empty()) throw Error(hdf5::place_of(group, foreign.front()), "does not belong here");
-}
-
-/// Reads a coordinate that must count from `first`, and returns its length.
-template <class T>
-hsize_t read_numbered(const Handle& group, const std::string& name, T first) {
-    const Dataset dataset(group, name);
-    if (dataset.extents().size() != 1) throw Error(dataset.place(), "is not a list of numbers");
-    for (const T value : dataset.read<T>())
-        if (value != first++) throw Error(dataset.place(), "does not count on by one");
-    return dataset.extents()[0];
 }
 
 /// Throws unless as many trials are counted as the totals are of.

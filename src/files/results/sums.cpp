@@ -1,6 +1,5 @@
-#include "files/results/sums.hpp"
-
 #include "files/results/format.hpp"
+#include "files/results/parts.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,11 +1,5 @@
-#include "files/results/sweep.hpp"
-
-#include <credence/text.hpp>
-
 #include "files/hdf5/read.hpp"
-#include "files/hdf5/write.hpp"
-
-#include <cmath>
+#include "files/results/format.hpp"
 
 namespace credence {
 

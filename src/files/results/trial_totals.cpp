@@ -1,9 +1,5 @@
-#include "files/results/trial_totals.hpp"
-
-#include <credence/text.hpp>
-
 #include "files/results/format.hpp"
-#include "files/results/sums.hpp"
+#include "files/results/parts.hpp"
 
 #include <algorithm>
 
@@ -145,8 +141,7 @@ void write_block_ranges(const Handle& group, const BlockRanges& blocks) {
 }
 
 BlockRanges read_block_ranges(const Handle& group, std::int64_t asked) {
-    const Dataset dataset(group, "first_block");
-    if (dataset.extents().size() != 1) throw Error(dataset.place(), "is not a list of numbers");
+    const Dataset dataset = open_list(group, "first_block");
     const auto first = dataset.read<std::int64_t>(),
                last = read_as<std::int64_t>(group, "last_block", dataset.extents());
     BlockRanges blocks;

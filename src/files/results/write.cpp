@@ -2,15 +2,10 @@
 
 #include <credence/text.hpp>
 
-#include "files/hdf5/read.hpp"
-#include "files/results/evidence.hpp"
 #include "files/results/format.hpp"
-#include "files/results/links.hpp"
-#include "files/results/sums.hpp"
-#include "files/results/trial_totals.hpp"
+#include "files/results/parts.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 
 namespace credence {

@@ -50,7 +50,7 @@ void write_variable(const Handle& group, const TrajectoryVariable& variable, con
             hdf5::write_numbers<T>(written, "_FillValue", {fill});
         return written;
     };
-    if (variable.numbers == TrajectoryNumbers::real) return void(write(one_nan(NAN)));
+    if (variable.numbers == TrajectoryNumbers::real) return void(write(one_nan(nan)));
     if (variable.numbers == TrajectoryNumbers::integer) return void(write(std::int32_t{-1}));
     const Handle written = write(std::int8_t{-1});
     std::vector<std::int8_t> codes{-1};
