@@ -94,6 +94,16 @@ std::optional<double> parse_share(const std::string& given) {
     return number ? std::optional(*number / (percent ? 100 : 1)) : std::nullopt;
 }
 
+/// The share that an option gives, between 0 and 1, both excluded.
+double parse_open_share(const Parsed& parsed, const std::string& option, const std::string& usual) {
+    const std::string given = parsed.text(option).value_or(usual);
+    const double share = parse_share(given).value_or(0);
+    if (!(share > 0 && share < 1))
+        throw invalid_value(as_option(option), given, "must be between 0 and 100 %, both excluded",
+                            "Write " + usual + " or 0.05");
+    return share;
+}
+
 }  // namespace
 
 std::optional<std::string> Parsed::text(const std::string& option) const {
@@ -193,20 +203,6 @@ Parsed parsed_of(const Command& command, std::vector<std::string> arguments, Val
     take_suffix(command, parsed);
     return parsed;
 }
-
-namespace {
-
-/// The share that an option gives, between 0 and 1, both excluded.
-double parse_open_share(const Parsed& parsed, const std::string& option, const std::string& usual) {
-    const std::string given = parsed.text(option).value_or(usual);
-    const double share = parse_share(given).value_or(0);
-    if (!(share > 0 && share < 1))
-        throw invalid_value(as_option(option), given, "must be between 0 and 100 %, both excluded",
-                            "Write " + usual + " or 0.05");
-    return share;
-}
-
-}  // namespace
 
 Limits parse_limits(const Parsed& parsed) {
     Limits limits(parse_open_share(parsed, "margin", "5%"), parse_failed(parsed));

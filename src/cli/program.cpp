@@ -98,6 +98,31 @@ int dispatch(const std::string& name, const std::vector<std::string>& arguments,
                      meant.empty() ? as_command({"--help"}) + " lists them" : "Did you mean " + meant + "?");
 }
 
+int obey_or_complain(const std::vector<std::string>& words) {
+    const std::string name = names_command(words) ? words.front() : "";
+    const std::string prefix = program_name() + (name.empty() ? "" : " " + name) + ": ";
+    try {
+        cli::check_process(words);
+    } catch (const InputError& error) {
+        return complain(prefix + error.what(), 2);
+    }
+    try {
+        const int code = cli::obey(words);
+        if (!std::cout.flush()) throw Failure("cannot write to the standard output.");
+        return code;
+    } catch (const InputError& error) {
+        return complain(prefix + error.what(), 2);
+    } catch (const std::bad_alloc&) {
+        return complain(prefix + (name == "run" ? "out of memory. Ask for fewer trials; --dry-run says what they take."
+                                                : "out of memory. The file holds more than fits."),
+                        1);
+    } catch (const std::exception& error) {
+        return complain(prefix + error.what(), 1);
+    } catch (...) {
+        return complain(prefix + "stopped by what is no std::exception. A world of one's own may have thrown it.", 1);
+    }
+}
+
 }  // namespace
 
 namespace credence {
@@ -137,35 +162,6 @@ int cli::obey(const Parsed& parsed) {
 void cli::check_process(const std::vector<std::string>& words) {
     if (names_command(words) && words.front() != "help") best_target(), check_stack();
 }
-
-namespace {
-
-int obey_or_complain(const std::vector<std::string>& words) {
-    const std::string name = names_command(words) ? words.front() : "";
-    const std::string prefix = program_name() + (name.empty() ? "" : " " + name) + ": ";
-    try {
-        cli::check_process(words);
-    } catch (const InputError& error) {
-        return complain(prefix + error.what(), 2);
-    }
-    try {
-        const int code = cli::obey(words);
-        if (!std::cout.flush()) throw Failure("cannot write to the standard output.");
-        return code;
-    } catch (const InputError& error) {
-        return complain(prefix + error.what(), 2);
-    } catch (const std::bad_alloc&) {
-        return complain(prefix + (name == "run" ? "out of memory. Ask for fewer trials; --dry-run says what they take."
-                                                : "out of memory. The file holds more than fits."),
-                        1);
-    } catch (const std::exception& error) {
-        return complain(prefix + error.what(), 1);
-    } catch (...) {
-        return complain(prefix + "stopped by what is no std::exception. A world of one's own may have thrown it.", 1);
-    }
-}
-
-}  // namespace
 
 int program(int argc, char** argv) {
     cli::hold_standard_streams();

@@ -52,43 +52,6 @@ void refuse_group(const Handle& parent, const std::string& name) {
 /// The name by which HDF5 finds an object from the root.
 const char* object_name(const std::string& path) { return path.empty() ? "." : path.c_str(); }
 
-}  // namespace
-
-bool FileSource::has(const std::string& path) const {
-    return at_path(root_, path,
-                   [](const Handle& group, const std::string& name) { return hdf5::has_link(group, name); });
-}
-
-DatasetPointer FileSource::open(const std::string& path, Numbers numbers) const {
-    return at_path(root_, path, [&](const Handle& group, const std::string& name) -> DatasetPointer {
-        refuse_group(group, name);
-        return std::make_unique<FileDataset>(hdf5::RealDataset(group, name, numbers == Numbers::any));
-    });
-}
-
-std::vector<std::string> FileSource::names_in(const std::string& group) const {
-    if (!has(group)) return {};
-    return at_path(root_, group, [](const Handle& parent, const std::string& name) {
-        return hdf5::sorted_link_names(hdf5::open_group(parent, name));
-    });
-}
-
-bool FileSource::has_attribute(const std::string& name, const std::string& path) const {
-    if (path.empty() && given_.contains(name)) return true;
-    const htri_t answer = H5Aexists_by_name(root_.id(), object_name(path), name.c_str(), H5P_DEFAULT);
-    hdf5::check(answer, record_attribute_place(name, path), "cannot be looked up");
-    return answer > 0;
-}
-
-std::string FileSource::text(const std::string& name, const std::string& path) const {
-    if (const auto given = given_.find(name); path.empty() && given != given_.end()) return given->second;
-    const Handle object(H5Oopen(root_.id(), object_name(path), H5P_DEFAULT), H5Oclose,
-                        record_attribute_place(name, path), "HDF5 cannot open it");
-    return hdf5::read_any_text(object, name);
-}
-
-namespace {
-
 /// The number in an attribute, read as T, HDF5's `native`; nothing where it holds anything else.
 template <class T>
 std::optional<T> read_number(const Handle& root, const std::string& name, const std::string& path, hid_t native) {
@@ -105,19 +68,6 @@ std::optional<T> read_number(const Handle& root, const std::string& name, const 
     hdf5::check(H5Aread(attribute.id(), native, &number), place, "HDF5 cannot read it");
     return number;
 }
-
-}  // namespace
-
-std::optional<double> FileSource::number(const std::string& name, const std::string& path) const {
-    return read_number<double>(root_, name, path, H5T_NATIVE_DOUBLE);
-}
-
-std::optional<std::uint64_t> FileSource::seed() const {
-    if (!has_attribute("seed", "")) return std::nullopt;
-    return read_number<std::uint64_t>(root_, "seed", "", H5T_NATIVE_UINT64);
-}
-
-namespace {
 
 /// A path FILE:ARM as both; the arm is empty where the path is that of a file.
 std::pair<std::string, std::string> parted(const std::string& path) {
@@ -185,6 +135,48 @@ Record read_steps(const std::string& path, const std::function<void(const Progre
 }
 
 }  // namespace
+
+bool FileSource::has(const std::string& path) const {
+    return at_path(root_, path,
+                   [](const Handle& group, const std::string& name) { return hdf5::has_link(group, name); });
+}
+
+DatasetPointer FileSource::open(const std::string& path, Numbers numbers) const {
+    return at_path(root_, path, [&](const Handle& group, const std::string& name) -> DatasetPointer {
+        refuse_group(group, name);
+        return std::make_unique<FileDataset>(hdf5::RealDataset(group, name, numbers == Numbers::any));
+    });
+}
+
+std::vector<std::string> FileSource::names_in(const std::string& group) const {
+    if (!has(group)) return {};
+    return at_path(root_, group, [](const Handle& parent, const std::string& name) {
+        return hdf5::sorted_link_names(hdf5::open_group(parent, name));
+    });
+}
+
+bool FileSource::has_attribute(const std::string& name, const std::string& path) const {
+    if (path.empty() && given_.contains(name)) return true;
+    const htri_t answer = H5Aexists_by_name(root_.id(), object_name(path), name.c_str(), H5P_DEFAULT);
+    hdf5::check(answer, record_attribute_place(name, path), "cannot be looked up");
+    return answer > 0;
+}
+
+std::string FileSource::text(const std::string& name, const std::string& path) const {
+    if (const auto given = given_.find(name); path.empty() && given != given_.end()) return given->second;
+    const Handle object(H5Oopen(root_.id(), object_name(path), H5P_DEFAULT), H5Oclose,
+                        record_attribute_place(name, path), "HDF5 cannot open it");
+    return hdf5::read_any_text(object, name);
+}
+
+std::optional<double> FileSource::number(const std::string& name, const std::string& path) const {
+    return read_number<double>(root_, name, path, H5T_NATIVE_DOUBLE);
+}
+
+std::optional<std::uint64_t> FileSource::seed() const {
+    if (!has_attribute("seed", "")) return std::nullopt;
+    return read_number<std::uint64_t>(root_, "seed", "", H5T_NATIVE_UINT64);
+}
 
 Record read_record(const std::string& path, const std::function<void(const Progress&)>& progress, int segments,
                    const Attributes& attributes) {

@@ -59,6 +59,20 @@ Record read_record(const RecordReader& reader, const std::string& name, const Re
     return record;
 }
 
+/// What `use` makes of a reader of arrays, a part of which fits a cache; errors have the places and remedies of arrays.
+template <class Use>
+auto with_reader(const RecordArrays& arrays, const Use& use) {
+    constexpr std::int64_t part_numbers = (std::int64_t{1} << 20) / 8;
+    const PlacesAreArrays named;
+    try {
+        return use(RecordReader(ArraySource(arrays), part_numbers));
+    } catch (const RecordError& error) {
+        Complaint complaint = error.complaint();
+        complaint.remedy = error.remedy_of_arrays();
+        throw InputError(complaint);
+    }
+}
+
 }  // namespace
 
 Record read_record(const RecordReader& reader, const std::string& name, const ReportProgress& progress, int segments) {
@@ -115,24 +129,6 @@ Record read_record(RecordReader reader, const std::string& name, const ReportPro
         };
     return record;
 }
-
-namespace {
-
-/// What `use` makes of a reader of arrays, a part of which fits a cache; errors have the places and remedies of arrays.
-template <class Use>
-auto with_reader(const RecordArrays& arrays, const Use& use) {
-    constexpr std::int64_t part_numbers = (std::int64_t{1} << 20) / 8;
-    const PlacesAreArrays named;
-    try {
-        return use(RecordReader(ArraySource(arrays), part_numbers));
-    } catch (const RecordError& error) {
-        Complaint complaint = error.complaint();
-        complaint.remedy = error.remedy_of_arrays();
-        throw InputError(complaint);
-    }
-}
-
-}  // namespace
 
 Record read_record(const RecordArrays& arrays, const std::string& name, const ReportProgress& progress, int segments) {
     return with_reader(arrays, [&](RecordReader reader) {

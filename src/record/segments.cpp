@@ -25,6 +25,29 @@ void remove_trend(std::vector<double>& values, int degree) {
     all -= powers * powers.householderQr().solve(all).eval();
 }
 
+/// Adds a step's errors to the sums of its run and of its segment.
+void add_errors(const CheckedStep& step, std::vector<double>& of_run, std::vector<double>* of_segment) {
+    const auto n = static_cast<std::size_t>(step.e.size());
+    for (std::size_t j = 0; j < n; ++j) {
+        if (!step.here.empty() && !step.here[j]) continue;
+        const auto at = static_cast<Eigen::Index>(j);
+        const double variance = step.P.size() > 0 ? step.P(at, at) : step.variances.size() > 0 ? step.variances(at) : 1;
+        for (std::vector<double>* sums : {&of_run, of_segment})
+            if (sums != nullptr && variance > 0) (*sums)[j] += step.e(at) / variance, (*sums)[n + j] += 1 / variance;
+    }
+}
+
+/// The error of a step of a segment without the means.
+std::vector<double> about_mean(const double* error, std::size_t segment, std::size_t run, const SegmentMeans& means) {
+    const std::size_t n = means.drifts.size();
+    std::vector<double> about(error, error + n);
+    for (std::size_t j = 0; j < n; ++j) {
+        const std::vector<double>& sums = means.drifts[j] ? means.of_segment[segment] : means.of_run[run];
+        if (sums[n + j] > 0) about[j] -= sums[j] / sums[n + j];
+    }
+    return about;
+}
+
 }  // namespace
 
 SegmentPlanner::SegmentPlanner(const RecordShape& shape, int asked)
@@ -129,33 +152,6 @@ RecordSegments SegmentPlanner::finish(const RecordReader& reader, const std::str
     if (!segments.found.count) segments.results.reset();
     return segments;
 }
-
-namespace {
-
-/// Adds a step's errors to the sums of its run and of its segment.
-void add_errors(const CheckedStep& step, std::vector<double>& of_run, std::vector<double>* of_segment) {
-    const auto n = static_cast<std::size_t>(step.e.size());
-    for (std::size_t j = 0; j < n; ++j) {
-        if (!step.here.empty() && !step.here[j]) continue;
-        const auto at = static_cast<Eigen::Index>(j);
-        const double variance = step.P.size() > 0 ? step.P(at, at) : step.variances.size() > 0 ? step.variances(at) : 1;
-        for (std::vector<double>* sums : {&of_run, of_segment})
-            if (sums != nullptr && variance > 0) (*sums)[j] += step.e(at) / variance, (*sums)[n + j] += 1 / variance;
-    }
-}
-
-/// The error of a step of a segment without the means.
-std::vector<double> about_mean(const double* error, std::size_t segment, std::size_t run, const SegmentMeans& means) {
-    const std::size_t n = means.drifts.size();
-    std::vector<double> about(error, error + n);
-    for (std::size_t j = 0; j < n; ++j) {
-        const std::vector<double>& sums = means.drifts[j] ? means.of_segment[segment] : means.of_run[run];
-        if (sums[n + j] > 0) about[j] -= sums[j] / sums[n + j];
-    }
-    return about;
-}
-
-}  // namespace
 
 /// The same results as those of a record whose runs are the segments. Adds up `means` or, where these are there,
 /// subtracts them.

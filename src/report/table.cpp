@@ -54,6 +54,39 @@ std::string quoted_for_csv(const std::string& text) {
 
 std::string without_end_blanks(std::string line) { return line.substr(0, line.find_last_not_of(' ') + 1) + "\n"; }
 
+/// Writes the lines of a table. Where the row heads do not fit beside the other columns, they have lines of their own.
+class TextLines {
+public:
+    TextLines(const Table& table, int indent)
+        : table_(table), columns_(layout_of(table)), indent_(static_cast<std::size_t>(indent)),
+          first_(indent + width_of(columns_) <= text_width ? 0 : table.row_heads()) {}
+
+    std::string line(const std::vector<std::string>& cells) const {
+        const std::string margin(indent_, ' ');
+        std::string text = first_ == 0 ? "" : margin + wrapped_list("", heads_of(cells), indent_) + "\n";
+        std::string after = margin + (first_ == 0 ? "" : "  ");
+        for (std::size_t c = first_; c < cells.size(); ++c)
+            after += (c == first_ ? "" : "  ") + aligned(cells[c], columns_[c].width, columns_[c].numbers);
+        return text + without_end_blanks(std::move(after));
+    }
+    std::string text() const {
+        std::string text = line(table_.heads());
+        for (const Table::Row& row : table_.rows())
+            text += row.heads_group ? std::string(indent_, ' ') + row.cells.front().text() + "\n"
+                                    : line(texts_of(row.cells));
+        return text;
+    }
+
+private:
+    std::vector<std::string> heads_of(const std::vector<std::string>& cells) const {
+        return {cells.begin(), std::next(cells.begin(), static_cast<std::ptrdiff_t>(std::min(first_, cells.size())))};
+    }
+
+    const Table& table_;
+    const std::vector<ColumnLayout> columns_;
+    const std::size_t indent_, first_;  ///< the first column of the lines
+};
+
 }  // namespace
 
 std::string Cell::text() const {
@@ -125,43 +158,6 @@ Table& Table::group(const std::string& head) {
     rows_.push_back({{head}, true});
     return *this;
 }
-
-namespace {
-
-/// Writes the lines of a table. Where the row heads do not fit beside the other columns, they have lines of their own.
-class TextLines {
-public:
-    TextLines(const Table& table, int indent)
-        : table_(table), columns_(layout_of(table)), indent_(static_cast<std::size_t>(indent)),
-          first_(indent + width_of(columns_) <= text_width ? 0 : table.row_heads()) {}
-
-    std::string line(const std::vector<std::string>& cells) const {
-        const std::string margin(indent_, ' ');
-        std::string text = first_ == 0 ? "" : margin + wrapped_list("", heads_of(cells), indent_) + "\n";
-        std::string after = margin + (first_ == 0 ? "" : "  ");
-        for (std::size_t c = first_; c < cells.size(); ++c)
-            after += (c == first_ ? "" : "  ") + aligned(cells[c], columns_[c].width, columns_[c].numbers);
-        return text + without_end_blanks(std::move(after));
-    }
-    std::string text() const {
-        std::string text = line(table_.heads());
-        for (const Table::Row& row : table_.rows())
-            text += row.heads_group ? std::string(indent_, ' ') + row.cells.front().text() + "\n"
-                                    : line(texts_of(row.cells));
-        return text;
-    }
-
-private:
-    std::vector<std::string> heads_of(const std::vector<std::string>& cells) const {
-        return {cells.begin(), std::next(cells.begin(), static_cast<std::ptrdiff_t>(std::min(first_, cells.size())))};
-    }
-
-    const Table& table_;
-    const std::vector<ColumnLayout> columns_;
-    const std::size_t indent_, first_;  ///< the first column of the lines
-};
-
-}  // namespace
 
 std::string table_text(const Table& table, int indent) { return table.empty() ? "" : TextLines(table, indent).text(); }
 

@@ -148,6 +148,20 @@ std::vector<std::string> undecided_reasons(const ArmReport& arm) {
     return reasons;
 }
 
+/// What the errors over P may be, given those of the truth, and how accurate a truth would decide.
+void add_truth(const Consistency& verdict, std::vector<Reason>& reasons) {
+    if (verdict.truth.empty()) return;
+    constexpr std::size_t most = 4;
+    std::vector<std::string> parts;
+    for (const TruthFactor& one : verdict.truth)
+        if (parts.size() < most)
+            parts.push_back(one.group + " " + ratio_text(one.factor.low) + " to " + ratio_text(one.factor.high));
+    reasons.push_back({"mean squared error over P's, given the truth's own (95 %):", parts});
+    const double deciding = std::ranges::min_element(verdict.truth, {}, &TruthFactor::deciding_sigma)->deciding_sigma;
+    if (verdict.verdict == Verdict::undecided && deciding < 1)
+        reasons.push_back({"a truth with " + ratio_text(deciding) + " times this sigma would decide", {}});
+}
+
 }  // namespace
 
 std::string verdict_word(const ArmReport& arm) {
@@ -221,24 +235,6 @@ std::string trials_text(const Report& report) {
     return text + " of each arm" + (run == 0 || run == report.arms.size() ? "" : " run so far") + ", root seed " +
            std::to_string(*report.root_seed);
 }
-
-namespace {
-
-/// What the errors over P may be, given those of the truth, and how accurate a truth would decide.
-void add_truth(const Consistency& verdict, std::vector<Reason>& reasons) {
-    if (verdict.truth.empty()) return;
-    constexpr std::size_t most = 4;
-    std::vector<std::string> parts;
-    for (const TruthFactor& one : verdict.truth)
-        if (parts.size() < most)
-            parts.push_back(one.group + " " + ratio_text(one.factor.low) + " to " + ratio_text(one.factor.high));
-    reasons.push_back({"mean squared error over P's, given the truth's own (95 %):", parts});
-    const double deciding = std::ranges::min_element(verdict.truth, {}, &TruthFactor::deciding_sigma)->deciding_sigma;
-    if (verdict.verdict == Verdict::undecided && deciding < 1)
-        reasons.push_back({"a truth with " + ratio_text(deciding) + " times this sigma would decide", {}});
-}
-
-}  // namespace
 
 std::vector<Reason> reasons_of(const ArmReport& arm) {
     if (arm.not_run()) return {};

@@ -17,6 +17,24 @@ double wilson_low(double successes, double trials, double z) {
     return (2 * successes + z * z - root) / (2 * (trials + z * z));
 }
 
+/// Without NaN, in order.
+void put_in_order(std::vector<double>& values) {
+    std::erase_if(values, [](double value) { return std::isnan(value); });
+    std::sort(values.begin(), values.end());
+}
+
+/// Of probabilities in order.
+double distance_of_sorted(const std::vector<double>& probabilities) {
+    if (probabilities.empty()) return nan;
+    const double n = static_cast<double>(probabilities.size());
+    double greatest = 0;
+    for (std::size_t i = 0; i < probabilities.size(); ++i) {
+        const double p = probabilities[i], below = static_cast<double>(i);
+        greatest = std::max({greatest, (below + 1) / n - p, p - below / n});
+    }
+    return greatest;
+}
+
 }  // namespace
 
 double share_upper_bound(double count, double trials, double level) {
@@ -43,28 +61,6 @@ double chi_square_p(double statistic, double degrees) {
     if (std::isinf(statistic)) return 0;
     return boost::math::cdf(boost::math::complement(boost::math::chi_squared(degrees), statistic));
 }
-
-namespace {
-
-/// Without NaN, in order.
-void put_in_order(std::vector<double>& values) {
-    std::erase_if(values, [](double value) { return std::isnan(value); });
-    std::sort(values.begin(), values.end());
-}
-
-/// Of probabilities in order.
-double distance_of_sorted(const std::vector<double>& probabilities) {
-    if (probabilities.empty()) return nan;
-    const double n = static_cast<double>(probabilities.size());
-    double greatest = 0;
-    for (std::size_t i = 0; i < probabilities.size(); ++i) {
-        const double p = probabilities[i], below = static_cast<double>(i);
-        greatest = std::max({greatest, (below + 1) / n - p, p - below / n});
-    }
-    return greatest;
-}
-
-}  // namespace
 
 double uniform_distance(std::vector<double> probabilities) {
     put_in_order(probabilities);

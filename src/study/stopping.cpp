@@ -68,6 +68,13 @@ std::optional<std::int64_t> predicted_for(const GoalState& state, const InterimA
     }
 }
 
+/// An interrupted run decides nothing, and makes no further interim analysis.
+InterimAnalysis interrupted_look(std::int64_t trials, int number) {
+    InterimAnalysis analysis{trials, number, analysis_alpha(number), {}, false};
+    analysis.interrupted = true;
+    return analysis;
+}
+
 }  // namespace
 
 double analysis_alpha(int number) { return std::ldexp(all_looks_alpha, -number); }
@@ -120,17 +127,6 @@ const GoalState& widest(const InterimAnalysis& analysis) {
     return *std::max_element(analysis.states.begin(), analysis.states.end(),
                              [](const GoalState& a, const GoalState& b) { return excess(a) < excess(b); });
 }
-
-namespace {
-
-/// An interrupted run decides nothing, and makes no further interim analysis.
-InterimAnalysis interrupted_look(std::int64_t trials, int number) {
-    InterimAnalysis analysis{trials, number, analysis_alpha(number), {}, false};
-    analysis.interrupted = true;
-    return analysis;
-}
-
-}  // namespace
 
 InterimAnalysis run_analyses(const StoppingRule& rule,
                              const std::function<InterimAnalysis(std::int64_t trials, int number)>& analysis) {

@@ -19,6 +19,14 @@ SeriesTotals no_totals(const Series& series, std::size_t steps) {
             std::vector<std::int64_t>(series.role == SeriesRole::nees ? steps * coverage_level_count : 0)};
 }
 
+/// The same scenario without any block, and without memory for columns.
+ScenarioResults without_blocks(const ScenarioResults& results) {
+    ScenarioResults empty{results.scenario, results.columns, results.all_series, {}, 0, {}, results.keep};
+    name_arms(empty);
+    clear_totals(empty);
+    return empty;
+}
+
 }  // namespace
 
 void clear_totals(ScenarioResults& results) {
@@ -32,18 +40,6 @@ void clear_totals(ScenarioResults& results) {
                                std::vector<std::int64_t>(lags)};
     }
 }
-
-namespace {
-
-/// The same scenario without any block, and without memory for columns.
-ScenarioResults without_blocks(const ScenarioResults& results) {
-    ScenarioResults empty{results.scenario, results.columns, results.all_series, {}, 0, {}, results.keep};
-    name_arms(empty);
-    clear_totals(empty);
-    return empty;
-}
-
-}  // namespace
 
 void name_arms(ScenarioResults& results) {
     std::vector<TrialTotals> none = empty_trial_totals(results.columns, results.scenario.arms.size());

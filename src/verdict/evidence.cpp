@@ -306,17 +306,6 @@ void count_trials(const ScenarioResults& results, const ArmResults& arm, Evidenc
     evidence.diverged_are_judged = arm.totals.trials.diverged_count && evidence.diverged > 0;
 }
 
-}  // namespace
-
-double Evidence::may_be_unseen() const {
-    if (of_few_runs() || all_trials < 2) return nan;
-    return share_upper_bound(static_cast<double>(failed_trials()), static_cast<double>(all_trials), 0.05);
-}
-
-bool Whiteness::known() const { return std::isfinite(scaled); }
-
-namespace {
-
 /// What totals by step say, and the moments of the detailed trials.
 Evidence means_and_series(const ScenarioResults& results, const ArmResults& arm) {
     Evidence evidence;
@@ -353,6 +342,13 @@ Evidence evidence_of_counted(const ScenarioResults& results, const ArmResults& a
 }
 
 }  // namespace
+
+double Evidence::may_be_unseen() const {
+    if (of_few_runs() || all_trials < 2) return nan;
+    return share_upper_bound(static_cast<double>(failed_trials()), static_cast<double>(all_trials), 0.05);
+}
+
+bool Whiteness::known() const { return std::isfinite(scaled); }
 
 Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     const TrialTotals& trials = arm.totals.trials;

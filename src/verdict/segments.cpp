@@ -155,10 +155,6 @@ std::string too_few(const Evidence& evidence) {
            " are needed, some " + steps_needed(evidence.segments.steps) + " steps";
 }
 
-}  // namespace
-
-namespace {
-
 /// Those series in which the runs differ by more than their segments say, the first of them. Few runs are compared
 /// without the offsets, in which they always differ.
 std::string differing_runs(const Evidence& segments, const std::vector<std::int64_t>& run, bool centred) {

@@ -27,6 +27,52 @@ void require_scalar(const Handle& attribute, const std::string& place) {
     if (H5Sget_simple_extent_type(space.id()) != H5S_SCALAR) throw Error(place, "is not a scalar");
 }
 
+/// The first bytes of a file, fewer where it is shorter. Throws Error.
+std::string start_of(const std::string& path, std::size_t most) {
+    try {
+        return start_of_file(path, most);
+    } catch (const Unreadable& why) {
+        const std::string whole = "the file";
+        if (why.is_missing()) throw Error(whole, "cannot be found", "Check the path");
+        if (why.is_irregular()) throw Error(whole, "is not a regular file", "Give an HDF5 file");
+        throw Error(whole, std::string("cannot be read (") + why.what() + ")", remedy_for_reading(why.error()));
+    }
+}
+
+/// A merge has up to a thousand files open, so the library's cache for each must be small. It has a fixed size: to
+/// evict what is closed, the library searches all of its cache each time an object is closed.
+void limit_cache(const Handle& access) {
+    constexpr std::size_t size = 128 << 10;
+    H5AC_cache_config_t config;
+    config.version = H5AC__CURR_CACHE_CONFIG_VERSION;
+    check(H5Pget_mdc_config(access.id(), &config), "/", "HDF5 refuses its access properties");
+    config.set_initial_size = true;
+    config.initial_size = config.min_size = config.max_size = size;
+    config.incr_mode = H5C_incr__off;
+    config.flash_incr_mode = H5C_flash_incr__off;
+    config.decr_mode = H5C_decr__off;
+    check(H5Pset_mdc_config(access.id(), &config), "/", "HDF5 refuses its access properties");
+}
+
+std::vector<std::string> names_of_links(const Handle& group, H5_index_t order, hsize_t most,
+                                        const std::string& problem) {
+    H5G_info_t info;
+    const std::string place = place_of(group);
+    check(H5Gget_info(group.id(), &info), place, "HDF5 cannot read it");
+    if (info.nlinks > most) throw Error(place, "holds more than " + std::to_string(most) + " objects");
+    std::vector<std::string> names;
+    for (hsize_t i = 0; i < info.nlinks; ++i) {
+        const auto get = [&](char* to, std::size_t room) {
+            const ssize_t length = H5Lget_name_by_idx(group.id(), ".", order, H5_ITER_INC, i, to, room, H5P_DEFAULT);
+            if (length <= 0) throw failure(place, problem);
+            return static_cast<std::size_t>(length);
+        };
+        names.emplace_back(get(nullptr, 0), '\0');
+        get(names.back().data(), names.back().size() + 1);
+    }
+    return names;
+}
+
 }  // namespace
 
 hsize_t file_size(const Handle& object) {
@@ -57,37 +103,6 @@ const std::string& hard(const Handle& group, const std::string& name) {
     return name;
 }
 
-namespace {
-
-/// The first bytes of a file, fewer where it is shorter. Throws Error.
-std::string start_of(const std::string& path, std::size_t most) {
-    try {
-        return start_of_file(path, most);
-    } catch (const Unreadable& why) {
-        const std::string whole = "the file";
-        if (why.is_missing()) throw Error(whole, "cannot be found", "Check the path");
-        if (why.is_irregular()) throw Error(whole, "is not a regular file", "Give an HDF5 file");
-        throw Error(whole, std::string("cannot be read (") + why.what() + ")", remedy_for_reading(why.error()));
-    }
-}
-
-/// A merge has up to a thousand files open, so the library's cache for each must be small. It has a fixed size: to
-/// evict what is closed, the library searches all of its cache each time an object is closed.
-void limit_cache(const Handle& access) {
-    constexpr std::size_t size = 128 << 10;
-    H5AC_cache_config_t config;
-    config.version = H5AC__CURR_CACHE_CONFIG_VERSION;
-    check(H5Pget_mdc_config(access.id(), &config), "/", "HDF5 refuses its access properties");
-    config.set_initial_size = true;
-    config.initial_size = config.min_size = config.max_size = size;
-    config.incr_mode = H5C_incr__off;
-    config.flash_incr_mode = H5C_flash_incr__off;
-    config.decr_mode = H5C_decr__off;
-    check(H5Pset_mdc_config(access.id(), &config), "/", "HDF5 refuses its access properties");
-}
-
-}  // namespace
-
 Handle open_file(const std::string& path) {
     const std::string whole = "the file", signature = "\x89HDF\r\n\x1a\n", start = start_of(path, signature.size());
     // A workspace saved by MATLAB is HDF5 after a header of its own; its variables have no attribute on the root.
@@ -108,29 +123,6 @@ Handle open_file(const std::string& path) {
         return {file, H5Fclose, whole, ""};
     throw refused;
 }
-
-namespace {
-
-std::vector<std::string> names_of_links(const Handle& group, H5_index_t order, hsize_t most,
-                                        const std::string& problem) {
-    H5G_info_t info;
-    const std::string place = place_of(group);
-    check(H5Gget_info(group.id(), &info), place, "HDF5 cannot read it");
-    if (info.nlinks > most) throw Error(place, "holds more than " + std::to_string(most) + " objects");
-    std::vector<std::string> names;
-    for (hsize_t i = 0; i < info.nlinks; ++i) {
-        const auto get = [&](char* to, std::size_t room) {
-            const ssize_t length = H5Lget_name_by_idx(group.id(), ".", order, H5_ITER_INC, i, to, room, H5P_DEFAULT);
-            if (length <= 0) throw failure(place, problem);
-            return static_cast<std::size_t>(length);
-        };
-        names.emplace_back(get(nullptr, 0), '\0');
-        get(names.back().data(), names.back().size() + 1);
-    }
-    return names;
-}
-
-}  // namespace
 
 std::vector<std::string> link_names(const Handle& group) {
     const std::vector<std::string> names =

@@ -8,6 +8,44 @@ namespace {
 
 constexpr std::uint32_t commit_magic = 0x6b636f6c;
 
+template <class T>
+void put_as(ByteWriter& to, const double* values, std::size_t count) {
+    to.put_all(std::vector<T>(values, values + count));
+}
+
+template <class T>
+void get_as(ByteReader& from, double* values, std::size_t count) {
+    const std::vector<T> read = from.get_all<T>(count);
+    std::copy(read.begin(), read.end(), values);
+}
+
+/// The text padded with nulls to `size`, or cut to it.
+void put_release(ByteWriter& to, std::string release) {
+    release.resize(commit_release_size, '\0');
+    to.put_raw(release.data(), release.size());
+}
+
+std::string get_release(ByteReader& from) {
+    std::string release(from.raw(commit_release_size), commit_release_size);
+    release.resize(std::min(release.find('\0'), release.size()));
+    if (std::any_of(release.begin(), release.end(), [](char c) { return c < ' ' || c > '~'; }))
+        throw BadBytes("an impossible release");
+    return release;
+}
+
+/// Ranges of a study's blocks, and in `start.blocks` those blocks that have values.
+void get_ranges(ByteReader& from, std::uint32_t count, const BlockLayout& layout, CommitStart& start) {
+    for (; count > 0; --count) {
+        const BlockRange range{from.get<std::int64_t>(), from.get<std::int64_t>()};
+        if (range.first < 0 || range.last < range.first || range.last >= block_count(start.trials))
+            throw BadBytes("a block that the study does not have");
+        start.ranges.push_back(range);
+        for (std::int64_t block = range.first; block <= range.last && layout.detailed(block); ++block)
+            start.blocks.push_back({block, trials_in_block(start.trials, block)});
+        if (std::ssize(start.blocks) > layout.detailed_blocks()) throw BadBytes("a block is there twice");
+    }
+}
+
 }  // namespace
 
 void put_shard(ByteWriter& to, const Shard& shard) {
@@ -53,21 +91,6 @@ std::int64_t BlockLayout::size(const JournalBlock& block) const {
 std::int64_t value_size(ColumnType type) {
     return type == ColumnType::real ? 8 : type == ColumnType::integer ? 4 : 1;
 }
-
-namespace {
-
-template <class T>
-void put_as(ByteWriter& to, const double* values, std::size_t count) {
-    to.put_all(std::vector<T>(values, values + count));
-}
-
-template <class T>
-void get_as(ByteReader& from, double* values, std::size_t count) {
-    const std::vector<T> read = from.get_all<T>(count);
-    std::copy(read.begin(), read.end(), values);
-}
-
-}  // namespace
 
 void put_values(ByteWriter& to, ColumnType type, const double* values, std::size_t count) {
     if (type == ColumnType::real) to.put_raw(values, count * sizeof(double));
@@ -119,24 +142,6 @@ void put_commit_head(ByteWriter& to, const CommitHead& head) {
     to.put(head.payload);
 }
 
-namespace {
-
-/// The text padded with nulls to `size`, or cut to it.
-void put_release(ByteWriter& to, std::string release) {
-    release.resize(commit_release_size, '\0');
-    to.put_raw(release.data(), release.size());
-}
-
-std::string get_release(ByteReader& from) {
-    std::string release(from.raw(commit_release_size), commit_release_size);
-    release.resize(std::min(release.find('\0'), release.size()));
-    if (std::any_of(release.begin(), release.end(), [](char c) { return c < ' ' || c > '~'; }))
-        throw BadBytes("an impossible release");
-    return release;
-}
-
-}  // namespace
-
 CommitHead get_commit_head(ByteReader& from) {
     if (from.get<std::uint32_t>() != commit_magic) throw BadBytes("no record begins there");
     CommitHead head;
@@ -186,23 +191,6 @@ CommitStart commit_of(const std::vector<std::int64_t>& blocks, std::int64_t tria
     start.ranges.insert(start.ranges.end(), others.begin(), others.end());
     return start;
 }
-
-namespace {
-
-/// Ranges of a study's blocks, and in `start.blocks` those blocks that have values.
-void get_ranges(ByteReader& from, std::uint32_t count, const BlockLayout& layout, CommitStart& start) {
-    for (; count > 0; --count) {
-        const BlockRange range{from.get<std::int64_t>(), from.get<std::int64_t>()};
-        if (range.first < 0 || range.last < range.first || range.last >= block_count(start.trials))
-            throw BadBytes("a block that the study does not have");
-        start.ranges.push_back(range);
-        for (std::int64_t block = range.first; block <= range.last && layout.detailed(block); ++block)
-            start.blocks.push_back({block, trials_in_block(start.trials, block)});
-        if (std::ssize(start.blocks) > layout.detailed_blocks()) throw BadBytes("a block is there twice");
-    }
-}
-
-}  // namespace
 
 CommitStart get_commit_start(ByteReader& from, const BlockLayout& layout) {
     CommitStart start;

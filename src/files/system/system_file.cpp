@@ -33,16 +33,6 @@ std::string remedy_for(int error) {
     }
 }
 
-}  // namespace
-
-void fail_to_write(const std::string& path, const std::string& why, int error) {
-    throw Failure("cannot write " + path, why, remedy_for(error));
-}
-
-void fail_to_write(const std::string& path, int error) { fail_to_write(path, words_for(error), error); }
-
-namespace {
-
 bool leads_nowhere(int error) {
     return error == ENOENT || error == ENOTDIR || error == ELOOP || error == EACCES || error == ENAMETOOLONG;
 }
@@ -51,18 +41,6 @@ bool leads_nowhere(int error) {
 [[noreturn]] void fail_to_access(const std::string& path, int error) {
     throw Failure("cannot access " + path, words_for(error), remedy_for_reading(error));
 }
-
-}  // namespace
-
-std::optional<struct stat> status_of(const std::string& path, const std::string& target, Links links) {
-    struct stat status {};
-    const int follow = links == Links::followed ? 0 : AT_SYMLINK_NOFOLLOW;
-    if (fstatat(AT_FDCWD, path.c_str(), &status, follow) == 0) return status;
-    if (!leads_nowhere(errno)) fail_to_access(target, errno);
-    return std::nullopt;
-}
-
-namespace {
 
 struct stat status_of(const Descriptor& file, const std::string& target) {
     struct stat status {};
@@ -76,15 +54,25 @@ void lock_for_writing(const Descriptor& file, const std::string& target) {
         throw InputError("cannot write " + target, "another program is writing it", remedy_for(EWOULDBLOCK));
 }
 
-}  // namespace
-
-namespace {
-
 bool same_file(const std::optional<struct stat>& one, const std::optional<struct stat>& other) {
     return one && other && one->st_ino == other->st_ino && one->st_dev == other->st_dev;
 }
 
 }  // namespace
+
+void fail_to_write(const std::string& path, const std::string& why, int error) {
+    throw Failure("cannot write " + path, why, remedy_for(error));
+}
+
+void fail_to_write(const std::string& path, int error) { fail_to_write(path, words_for(error), error); }
+
+std::optional<struct stat> status_of(const std::string& path, const std::string& target, Links links) {
+    struct stat status {};
+    const int follow = links == Links::followed ? 0 : AT_SYMLINK_NOFOLLOW;
+    if (fstatat(AT_FDCWD, path.c_str(), &status, follow) == 0) return status;
+    if (!leads_nowhere(errno)) fail_to_access(target, errno);
+    return std::nullopt;
+}
 
 bool same_file(const Descriptor& opened, const std::string& path, const std::string& target) {
     return same_file(status_of(opened, target), status_of(path, target));

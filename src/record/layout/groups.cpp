@@ -86,17 +86,6 @@ std::vector<std::string> read_list(const RecordSource& source, const std::string
     return texts;
 }
 
-}  // namespace
-
-ComponentGroup group_of(const std::string& name, std::vector<int> members) {
-    ComponentGroup group{name, members.front(), static_cast<int>(members.size())};
-    if (std::ranges::adjacent_find(members, [](int i, int next) { return next != i + 1; }) != members.end())
-        group.components = std::move(members);
-    return group;
-}
-
-namespace {
-
 /// Text of one line that a list, a path and an option can hold.
 bool is_line(const std::string& name) {
     const auto is_unfit = [](unsigned char c) {
@@ -114,6 +103,13 @@ void require_name(bool fits, const std::string& name, const std::string& what, c
 }
 
 }  // namespace
+
+ComponentGroup group_of(const std::string& name, std::vector<int> members) {
+    ComponentGroup group{name, members.front(), static_cast<int>(members.size())};
+    if (std::ranges::adjacent_find(members, [](int i, int next) { return next != i + 1; }) != members.end())
+        group.components = std::move(members);
+    return group;
+}
 
 void require_group_name(const std::string& name, const std::string& place) {
     require_name(names_something(name), name, "group", place);

@@ -129,28 +129,6 @@ Table tests(const ComparedPair& pair) {
     return table;
 }
 
-}  // namespace
-
-std::string compare_head(const CompareReport& report) {
-    const ComparedPair& first_pair = report.pairs.front();
-    const Comparison& first = first_pair.comparison;
-    const bool one = std::all_of(report.pairs.begin(), report.pairs.end(),
-                                 [&](const ComparedPair& pair) { return pair.comparison.name() == first.name(); });
-    std::string text = (one ? first.name() : "A - B") + ", trial by trial: " + pairs_text(report);
-    text += ". Negative: " + (one ? first.a : "A") + " is lower.\n";
-    const bool trials = first_pair.keep == Keep::trials;
-    text += report.of_records
-                ? "Both of a pair are of the same run"
-                : "Both of a pair had the same draws (root seed " + std::to_string(report.root_seed) + ")";
-    return text + ". Intervals are two-sided 95 %" +
-           (trials ? "; p is that of Wilcoxon's signed ranks,\nHolm-corrected over all columns below"
-                   : " (Student's). Medians, bootstrap and signed ranks\nneed the trials: " + program_name() +
-                         " run --keep trials") +
-           "; conclusions hold together at 95 %.\n";
-}
-
-namespace {
-
 /// What the covariance of the truth's errors makes of the mean difference.
 std::string truth_text(const ComparedPair& pair) {
     const int digits = decimals_of(pair.comparison.columns.front().paired);
@@ -210,6 +188,24 @@ std::string others_text(const ComparedPair& pair) {
 }
 
 }  // namespace
+
+std::string compare_head(const CompareReport& report) {
+    const ComparedPair& first_pair = report.pairs.front();
+    const Comparison& first = first_pair.comparison;
+    const bool one = std::all_of(report.pairs.begin(), report.pairs.end(),
+                                 [&](const ComparedPair& pair) { return pair.comparison.name() == first.name(); });
+    std::string text = (one ? first.name() : "A - B") + ", trial by trial: " + pairs_text(report);
+    text += ". Negative: " + (one ? first.a : "A") + " is lower.\n";
+    const bool trials = first_pair.keep == Keep::trials;
+    text += report.of_records
+                ? "Both of a pair are of the same run"
+                : "Both of a pair had the same draws (root seed " + std::to_string(report.root_seed) + ")";
+    return text + ". Intervals are two-sided 95 %" +
+           (trials ? "; p is that of Wilcoxon's signed ranks,\nHolm-corrected over all columns below"
+                   : " (Student's). Medians, bootstrap and signed ranks\nneed the trials: " + program_name() +
+                         " run --keep trials") +
+           "; conclusions hold together at 95 %.\n";
+}
 
 std::string conclusion_text(const ComparedPair& pair) {
     return steps_text(pair) + failure_conclusion(pair) + first_conclusion(pair) + others_text(pair);

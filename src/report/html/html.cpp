@@ -37,6 +37,18 @@ Html symbol_of(Verdict verdict) {
     return "?"_html;
 }
 
+Html row_html(const Table::Row& row, const Table& table) {
+    if (row.heads_group)
+        return "<tr class=\"group\"><th scope=\"rowgroup\" colspan=\""_html +
+               escaped(std::to_string(table.heads().size())) + "\">"_html + html_of(row.cells.front()) +
+               "</th></tr>\n"_html;
+    Html html;
+    for (std::size_t c = 0; c < row.cells.size(); ++c)
+        html += c < table.row_heads() ? element("th", html_of(row.cells[c]), "scope=\"row\""_html)
+                                      : element("td", html_of(row.cells[c]));
+    return element("tr", html) + "\n"_html;
+}
+
 }  // namespace
 
 Html Html::trusted(std::string markup) {
@@ -90,22 +102,6 @@ std::string with_powers(std::string text) {
         for (auto at = text.find(plain); at != std::string::npos; at = text.find(plain)) text.replace(at, 2, raised);
     return text;
 }
-
-namespace {
-
-Html row_html(const Table::Row& row, const Table& table) {
-    if (row.heads_group)
-        return "<tr class=\"group\"><th scope=\"rowgroup\" colspan=\""_html +
-               escaped(std::to_string(table.heads().size())) + "\">"_html + html_of(row.cells.front()) +
-               "</th></tr>\n"_html;
-    Html html;
-    for (std::size_t c = 0; c < row.cells.size(); ++c)
-        html += c < table.row_heads() ? element("th", html_of(row.cells[c]), "scope=\"row\""_html)
-                                      : element("td", html_of(row.cells[c]));
-    return element("tr", html) + "\n"_html;
-}
-
-}  // namespace
 
 Html html_of(const Table& table) {
     if (table.empty()) return {};
