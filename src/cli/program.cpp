@@ -4,7 +4,6 @@
 #include "cli/process/exit_guard.hpp"
 #include "cli/process/limits.hpp"
 #include "cli/process/progress.hpp"
-#include "cli/process/streams.hpp"
 #include "cli/version.hpp"
 
 #include "base/program_name.hpp"
@@ -14,7 +13,9 @@
 #include "worlds/simulate.hpp"
 #include <credence/text.hpp>
 
+#include <fcntl.h>
 #include <hdf5.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <exception>
@@ -123,6 +124,20 @@ int obey_or_complain(const std::vector<std::string>& words) {
     }
 }
 
+/// Opens each of descriptors 0, 1 and 2 that is closed, so that no file that the program opens gets one of them: a
+/// library's messages would be written into that file. Ends the process where this is impossible.
+void hold_standard_streams() {
+    for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
+        if (fcntl(descriptor, F_GETFD) != -1) continue;
+        // The descriptor is opened in the mode in which the stream is not used. Reading from or writing to it then
+        // fails with EBADF, as on a closed descriptor, and the program reports that its output is lost and exits with
+        // 1; output written to /dev/null would be lost silently.
+        const int mode = descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY;
+        // open() returns the lowest free descriptor, which is this one.
+        if (open("/dev/null", mode) != descriptor) _exit(1);
+    }
+}
+
 }  // namespace
 
 namespace credence {
@@ -164,7 +179,7 @@ void cli::check_process(const std::vector<std::string>& words) {
 }
 
 int program(int argc, char** argv) {
-    cli::hold_standard_streams();
+    hold_standard_streams();
     wording() = program_wording;
     // When the process ends HDF5 would close its open objects, and might crash over an object that a damaged file kept
     // from being closed. Files that credence writes are closed, and checked, long before.

@@ -1,7 +1,8 @@
-#include "cli/run/dry.hpp"
+// `credence run --dry-run`: the expected time, memory and file size of a run.
 
 #include "cli/process/limits.hpp"
 #include "cli/process/progress.hpp"
+#include "cli/run/request.hpp"
 
 #include <credence/error.hpp>
 #include <credence/detail/worlds.hpp>

@@ -1,5 +1,5 @@
 #pragma once
-// The parsed options of `credence run`, and the study with which it begins.
+// `credence run`: its parsed options, the study with which it begins, the estimate of --dry-run, and --until.
 
 #include "cli/command.hpp"
 
@@ -33,5 +33,19 @@ RunRequest read_request(const Parsed& parsed);
 /// The run to begin or to resume; sets the request's trials where they were not given. Throws InputError where the
 /// output cannot be used or holds another study, or the goals do not fit this one.
 StoredRun starting_run(RunRequest& request);
+
+/// Refuses a run for which memory or disk are too small, as far as that is known in advance. A run with --until may
+/// need less than its ceiling, and is not refused. Throws InputError.
+void check_fit(const RunRequest& request, const Study& study);
+/// Prints the expected time, memory and file size, from one or more trials of every scenario.
+int dry_run(const RunRequest& request, const Study& study);
+
+/// Grows the study until it has the requested precision or reaches the ceiling; returns the last interim analysis.
+/// Prints a line on the standard error after every analysis, unless quiet.
+InterimAnalysis grow_until_precise(Study& study, const RunRequest& request, RunOptions options);
+/// The analysis and the count of trials at which the run stopped, and the interval of every requested mean there.
+std::string stopping_text(const InterimAnalysis& analysis);
+/// The line for a run that reached its ceiling first: the widest mean, and the trials that it would need.
+std::string imprecision_text(const InterimAnalysis& analysis, const StoppingRule& rule);
 
 }  // namespace credence::cli

@@ -1,7 +1,6 @@
 #include "cli/process/interrupt.hpp"
 #include "cli/process/progress.hpp"
-#include "cli/run/dry.hpp"
-#include "cli/run/until.hpp"
+#include "cli/run/request.hpp"
 #include "cli/version.hpp"
 
 #include "base/program_name.hpp"

@@ -1,7 +1,8 @@
-#include "cli/run/until.hpp"
+// `credence run --until`: grows a study and reports its precision and the trials that are still needed.
 
 #include "base/formatted.hpp"
 #include "cli/process/progress.hpp"
+#include "cli/run/request.hpp"
 
 #include <algorithm>
 #include <cmath>
