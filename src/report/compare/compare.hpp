@@ -111,6 +111,20 @@ CompareReport compare_studies(const std::vector<StudyFile>& files, const std::op
 /// does so: that the truth is exact, and that it is not, are both possible.
 void require_same_sign(CompareReport& report, const CompareReport& added);
 
+// Texts that every format of a comparison uses.
+
+/// What is compared, and the meaning of the intervals.
+std::string compare_head(const CompareReport& report);
+
+/// Failed and diverged trials, studies that are not complete, scenarios that are left out; a line each.
+std::string compare_notes(const CompareReport& report);
+
+/// One sentence on the first column, and the others that differ.
+std::string conclusion_text(const ComparedPair& pair);
+
+/// What is compared, where the arms' names do not show it; the scenario's name and title in the first line.
+std::string pair_head(const ComparedPair& pair);
+
 /// The comparison as text: the conclusions first, then a table with a row per column for each pair.
 std::string compare_text(const CompareReport& report);
 /// An array with an object per scenario and pair; NaN and infinity are null.

@@ -2,7 +2,6 @@
 
 #include "report/compare/compare.hpp"
 
-#include "report/compare/words.hpp"
 #include "report/format.hpp"
 #include "report/html/page.hpp"
 

@@ -8,7 +8,6 @@
 
 #include "base/program_name.hpp"
 #include "report/compare/choice.hpp"
-#include "report/compare/words.hpp"
 #include "report/format.hpp"
 #include "report/table.hpp"
 #include "report/words.hpp"
