@@ -10,19 +10,7 @@ namespace credence {
 
 namespace {
 
-Json intervals_json(const std::vector<Interval>& intervals) {
-    Json json = Json::array();
-    for (const Interval& interval : intervals) json.push_back(interval_json(interval));
-    return json;
-}
-
-/// One member of each of a list, as a list.
-template <class T, class Get>
-Json each_json(const std::vector<T>& list, const Get& get) {
-    Json json = Json::array();
-    for (const T& item : list) json.push_back(get(item));
-    return json;
-}
+Json intervals_json(const std::vector<Interval>& intervals) { return each_json(intervals, interval_json); }
 
 Json banded_json(const BandedRatio& ratio) {
     return {{"degrees", ratio.degrees},

@@ -13,6 +13,14 @@ using Json = nlohmann::ordered_json;
 
 inline Json interval_json(const Interval& interval) { return Json::array({interval.low, interval.high}); }
 
+/// What `get` makes of each of a list, as a list.
+template <class T, class Get>
+Json each_json(const std::vector<T>& list, const Get& get) {
+    Json json = Json::array();
+    for (const T& item : list) json.push_back(get(item));
+    return json;
+}
+
 /// All of an arm's evidence, by step where it has steps.
 Json evidence_json(const Evidence& evidence);
 
