@@ -3,7 +3,6 @@
 #include "numeric/chi_square.hpp"
 #include "statistics/goodness.hpp"
 #include "statistics/moments/trial_moments.hpp"
-#include "statistics/whiteness.hpp"
 
 #include "verdict/evidence_parts.hpp"
 #include "base/nan.hpp"
@@ -11,87 +10,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 
 namespace credence {
 
 namespace {
-
-const SeriesTotals* totals_named(const ScenarioResults& results, const ArmResults& arm, const std::string& name) {
-    for (std::size_t f = 0; f < results.all_series.size(); ++f)
-        if (results.all_series[f].name == name) return &arm.totals.series[f];
-    return nullptr;
-}
-
-/// Number of rows of a NIS at a step, summed over all trials [docs/statistics.md, NIS]: they vary, so it is not trials
-/// times rows.
-double rows_at(const Series& nis, const SeriesTotals* rows, const ArmResults& arm, std::size_t k) {
-    const double counted = rows == nullptr ? 0 : rows->sum[k].rounded();
-    return counted + static_cast<double>(nis.more_rows) * static_cast<double>(arm.totals.counted_at(k));
-}
-
-NisEvidence nis_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f) {
-    const Series& series = results.all_series[f];
-    const SeriesTotals* rows = totals_named(results, arm, series.rows);
-    NisEvidence evidence{series.part, {}, 0, nan, {nan, nan}, {nan, nan}};
-    ExactSum total;
-    std::vector<double> totals;
-    for (std::size_t k = 0; k < arm.totals.series[f].sum.size(); ++k) {
-        evidence.nis.degrees.push_back(rows_at(series, rows, arm, k));
-        evidence.degrees += evidence.nis.degrees.back();
-        totals.push_back(arm.totals.series[f].sum[k].rounded());
-        total.add(arm.totals.series[f].sum[k]);
-    }
-    fill_bands(totals, evidence.nis);
-    if (evidence.degrees > 0) {
-        evidence.ratio = total.rounded() / evidence.degrees;
-        const Interval band = chi_square_band(evidence.degrees, 0.05);
-        evidence.scale95 = {evidence.ratio / band.high, evidence.ratio / band.low};
-        const Moments run = moments_from_sums(arm.totals.trials.counted(), total.rounded(),
-                                              arm.totals.series[f].run_square_sum.rounded());
-        const double rows_a_trial = evidence.degrees / run.count,
-                     half = t_quantile(0.05, run.count - 1) * run.standard_error / rows_a_trial;
-        evidence.ratio95 = {evidence.ratio - half, evidence.ratio + half};
-        evidence.run = {run.count, evidence.ratio, run.standard_deviation / rows_a_trial,
-                        run.standard_error / rows_a_trial};
-    }
-    return evidence;
-}
-
-/// Number of trials whose innovations were correlated: the detailed ones of a study, all of a record.
-double correlated_trials(const ScenarioResults& results, const ArmResults& arm) {
-    if (results.blocks.empty()) return static_cast<double>(arm.totals.trials.counted());
-    const auto steps = static_cast<std::size_t>(results.steps());
-    double trials = 0;
-    for (std::size_t row = 0; row < arm.nees.size(); row += steps) trials += !std::isnan(arm.nees[row]);
-    return trials;
-}
-
-/// Sums of a lag, the number of products taken as the same in every trial: the files keep its total alone.
-LagSums lag_sums(const ProductTotals& products, std::size_t lag, double trials, double scale) {
-    const double count = static_cast<double>(products.count[lag]), each = count / trials,
-                 sum = products.sum[lag].rounded();
-    return {trials, sum, products.square_sum[lag].rounded(), sum * each, count, count * each, count * scale * scale};
-}
-
-/// `scale` is NIS/m: correlations are given over it too, because a wrong size of S is not correlation.
-std::vector<Whiteness> whiteness_evidence(const ProductTotals& products, double scale, double trials) {
-    std::vector<Whiteness> evidence;
-    const double lags = static_cast<double>(products.sum.size());
-    for (std::size_t lag = 0; lag < products.sum.size(); ++lag) {
-        if (products.count[lag] == 0) continue;
-        const LagSums sums = lag_sums(products, lag, trials, scale);
-        const auto bound = [&](double alpha) {
-            const std::optional<LagCorrelation> correlation = correlation_of(sums, alpha);
-            // Of few products the bound is shown, and not used [cautions.cpp].
-            return correlation ? (correlation->interval.high - correlation->interval.low) / 2 / scale
-                               : normal_quantile(alpha) / std::sqrt(sums.c);
-        };
-        const double mean = sums.p / sums.c;
-        evidence.push_back(
-            {static_cast<int>(lag) + 1, products.count[lag], mean, mean / scale, bound(0.05), bound(0.05 / lags)});
-    }
-    return evidence;
-}
 
 BiasEvidence bias_evidence(const ScenarioResults& results, const Series& series, const ArmResults& arm,
                            const SeriesTotals& totals) {
@@ -188,21 +111,21 @@ void add_squares(Evidence& evidence) {
     }
 }
 
-/// The detailed rows that have a NEES.
-std::vector<WorstTrial> trials_by_nees(const ScenarioResults& results, const ArmResults& arm) {
+/// The trial of a detailed row; nothing where it has no NEES.
+std::optional<WorstTrial> trial_by_nees(const ScenarioResults& results, const ArmResults& arm, std::size_t row) {
     const auto steps = static_cast<std::size_t>(results.steps());
-    std::vector<WorstTrial> trials;
-    for (std::size_t row = 0; row < arm.nees.size() / steps; ++row) {
-        const double *first = arm.nees.data() + row * steps, *last = first + steps;
-        double sum = 0, known = 0;
-        const double* largest = first;
-        for (const double* at = first; at != last; ++at)
-            if (!std::isnan(*at)) sum += *at, ++known, largest = !(*largest >= *at) ? at : largest;
-        if (known == 0) continue;
-        trials.push_back({trial_of(results, row), sum / known / results.state_size(),
-                          static_cast<int>(largest - first) + 1});
-    }
-    return trials;
+    const double *first = arm.nees.data() + row * steps, *last = first + steps;
+    double sum = 0, known = 0;
+    const double* largest = first;
+    for (const double* at = first; at != last; ++at)
+        if (!std::isnan(*at)) sum += *at, ++known, largest = !(*largest >= *at) ? at : largest;
+    if (known == 0) return std::nullopt;
+    return WorstTrial{trial_of(results, row), sum / known / results.state_size(),
+                      static_cast<int>(largest - first) + 1};
+}
+
+std::size_t detailed_rows(const ScenarioResults& results, const ArmResults& arm) {
+    return arm.nees.size() / static_cast<std::size_t>(results.steps());
 }
 
 void keep_worst(std::vector<WorstTrial>& trials) {
@@ -214,9 +137,13 @@ void keep_worst(std::vector<WorstTrial>& trials) {
 }
 
 WorstTrials worst_trials(const ScenarioResults& results, const ArmResults& arm) {
-    WorstTrials worst{trials_by_nees(results, arm), 0};
+    WorstTrials worst{{}, 0};
     double total = 0;
-    for (const WorstTrial& trial : worst.trials) total += trial.nees_ratio;
+    for (std::size_t row = 0; row < detailed_rows(results, arm); ++row)
+        if (const auto trial = trial_by_nees(results, arm, row)) {
+            worst.trials.push_back(*trial);
+            total += trial->nees_ratio;
+        }
     keep_worst(worst.trials);
     for (const WorstTrial& trial : worst.trials) worst.share += trial.nees_ratio / total;
     return worst;
@@ -224,23 +151,15 @@ WorstTrials worst_trials(const ScenarioResults& results, const ArmResults& arm) 
 
 /// The arm without the details of its diverged trials, which are returned.
 std::vector<WorstTrial> set_diverged_aside(const ScenarioResults& results, ArmResults& arm) {
-    const auto steps = static_cast<std::size_t>(results.steps());
+    const std::size_t rows = detailed_rows(results, arm);
     std::vector<WorstTrial> diverged;
-    const auto forget = [&](std::vector<double>& values, std::size_t row) {
-        const std::size_t width = values.size() / (arm.nees.size() / steps);
-        std::fill_n(values.begin() + static_cast<std::ptrdiff_t>(row * width), width, nan);
-    };
-    ArmResults one;
-    for (std::size_t row = 0; row < arm.nees.size() / steps; ++row) {
-        const auto first = arm.nees.begin() + static_cast<std::ptrdiff_t>(row * steps);
-        one.nees.assign(first, first + static_cast<std::ptrdiff_t>(steps));
-        for (WorstTrial& trial : trials_by_nees(results, one)) {
-            if (!(trial.nees_ratio > diverged_nees_ratio)) continue;
-            trial.trial = trial_of(results, row);
-            diverged.push_back(trial);
-            forget(arm.nees, row);
-            forget(arm.errors, row);
-            forget(arm.moments, row);
+    for (std::size_t row = 0; row < rows; ++row) {
+        const auto trial = trial_by_nees(results, arm, row);
+        if (!trial || !(trial->nees_ratio > diverged_nees_ratio)) continue;
+        diverged.push_back(*trial);
+        for (std::vector<double>* values : {&arm.nees, &arm.errors, &arm.moments}) {
+            const std::size_t width = values->size() / rows;
+            std::fill_n(values->begin() + static_cast<std::ptrdiff_t>(row * width), width, nan);
         }
     }
     keep_worst(diverged);
@@ -331,8 +250,7 @@ Evidence means_and_series(const ScenarioResults& results, const ArmResults& arm)
 
 Evidence evidence_of_counted(const ScenarioResults& results, const ArmResults& arm) {
     Evidence evidence = means_and_series(results, arm);
-    evidence.whiteness = whiteness_evidence(arm.totals.products, evidence.nis.empty() ? 1 : evidence.nis.front().ratio,
-                                           correlated_trials(results, arm));
+    evidence.whiteness = whiteness_evidence(results, arm, evidence.nis.empty() ? 1 : evidence.nis.front().ratio);
     evidence.distribution = distribution_evidence(results, arm);
     evidence.credibility = credibility_evidence(results, arm);
     evidence.worst = worst_trials(results, arm);
@@ -347,8 +265,6 @@ double Evidence::may_be_unseen() const {
     if (of_few_runs() || all_trials < 2) return nan;
     return share_upper_bound(static_cast<double>(failed_trials()), static_cast<double>(all_trials), 0.05);
 }
-
-bool Whiteness::known() const { return std::isfinite(scaled); }
 
 Evidence evidence_of(const ScenarioResults& results, const ArmResults& arm) {
     const TrialTotals& trials = arm.totals.trials;

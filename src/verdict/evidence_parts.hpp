@@ -1,5 +1,5 @@
 #pragma once
-// Declarations shared by the two files of the evidence.
+// Declarations shared by the files of the evidence.
 
 #include <credence/evidence.hpp>
 
@@ -19,6 +19,12 @@ GroupEvidence group_evidence(const ScenarioResults& results, const ArmResults& a
 
 /// The group and chart of the series f of role nees_in_chart.
 ChartEvidence chart_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
+
+/// The NIS of the series f.
+NisEvidence nis_evidence(const ScenarioResults& results, const ArmResults& arm, std::size_t f);
+
+/// Correlations by lag; `scale` is NIS/m: they are given over it too, because a wrong size of S is not correlation.
+std::vector<Whiteness> whiteness_evidence(const ScenarioResults& results, const ArmResults& arm, double scale);
 
 /// NEES/n of each quintile of the trials by their mean log det P, the smallest first: moments over its trials. Empty if
 /// P hardly varies, for fewer than 100 trials, and where trials are not kept.
