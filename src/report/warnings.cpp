@@ -1,4 +1,4 @@
-// What a report says before everything else: trials that failed, steps that are missing, what is not judged.
+// What a report says before everything else: its trials, those that failed, steps that are missing, what is not judged.
 
 #include <algorithm>
 #include <cmath>
@@ -92,7 +92,40 @@ std::string gaps_text(const ArmReport& arm) {
     return text;
 }
 
+/// Whether its runs are counted by their segments, or would be if there were more of these.
+bool is_of_logs(const ArmReport& arm) {
+    const SegmentEvidence& segments = arm.evidence.segments;
+    return segments.count || (segments.steps_of_runs > 0 && (arm.trials == 1 || segments.outnumber(arm.trials)));
+}
+
+/// `one log of 3000 steps, worth about 55 independent runs (segments of 54 steps)`
+std::string log_text(const ArmReport& arm) {
+    const SegmentEvidence& segments = arm.evidence.segments;
+    const std::string runs = arm.trials == 1 ? "one log of " : std::to_string(arm.trials) + " runs of together ",
+                      text = runs + std::to_string(segments.steps_of_runs) + " steps";
+    if (segments.steps == 0) return text;
+    return text + ", worth about " + segments.worth() + " (segments of " + std::to_string(segments.steps) + " steps)";
+}
+
 }  // namespace
+
+std::string trials_text(const Report& report) {
+    if (report.arms.size() == 1)
+        if (const ArmReport& arm = report.arms.front(); is_of_logs(arm)) return log_text(arm);
+    std::int64_t least = 0, most = 0;
+    std::size_t run = 0;
+    for (const ArmReport& arm : report.arms) {
+        if (arm.not_run()) continue;
+        least = run == 0 ? arm.trials : std::min(least, arm.trials);
+        most = std::max(most, arm.trials);
+        ++run;
+    }
+    const std::string text = (least == most ? "" : std::to_string(least) + " to ") + std::to_string(most) +
+                             (most == 1 ? " trial" : " trials");
+    if (!report.root_seed) return text;
+    return text + " of each arm" + (run == 0 || run == report.arms.size() ? "" : " run so far") + ", root seed " +
+           std::to_string(*report.root_seed);
+}
 
 std::vector<std::string> failure_lines(const std::string& arm, const FailureCounts& counts, double limit,
                                        const FailureWords& words) {

@@ -3,13 +3,13 @@
 #include "report/words.hpp"
 
 #include "base/formatted.hpp"
-#include "report/html/html.hpp"
 #include <credence/text.hpp>
 
 #include "report/format.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 
 namespace credence {
@@ -34,15 +34,11 @@ std::vector<std::string> findings_parts(const std::vector<Finding>& findings, Fa
     std::vector<Finding> worst;
     for (const Finding& finding : findings) {
         if (finding.what != what || (finding.about == Subject::direction) != directions) continue;
-        const auto same =
-            std::find_if(worst.begin(), worst.end(), [&](const Finding& f) { return f.where == finding.where; });
-        if (same == worst.end())
-            worst.push_back(finding);
-        else if (distance_off(finding) > distance_off(*same))
-            *same = finding;
+        const auto same = std::ranges::find(worst, finding.where, &Finding::where);
+        if (same == worst.end()) worst.push_back(finding);
+        else if (distance_off(finding) > distance_off(*same)) *same = finding;
     }
-    std::sort(worst.begin(), worst.end(),
-              [](const Finding& f, const Finding& g) { return distance_off(f) > distance_off(g); });
+    std::ranges::sort(worst, std::greater(), distance_off);
     std::vector<std::string> parts;
     for (std::size_t i = 0; i < std::min(most, worst.size()); ++i)
         parts.push_back(directions
@@ -142,9 +138,8 @@ std::vector<std::string> undecided_reasons(const ArmReport& arm) {
     if (verdict.verdict != Verdict::undecided) return {};
     std::vector<std::string> reasons = verdict.reasons;
     std::ranges::copy(suspicion_texts(arm), std::back_inserter(reasons));
-    if (const std::string text = needed_text(arm); !text.empty()) reasons.push_back(text);
-    if (const std::string text = reached_text(arm); !text.empty()) reasons.push_back(text);
-    if (const std::string text = findable_text(arm); !text.empty()) reasons.push_back(text);
+    for (const std::string& text : {needed_text(arm), reached_text(arm), findable_text(arm)})
+        if (!text.empty()) reasons.push_back(text);
     return reasons;
 }
 
@@ -199,41 +194,8 @@ std::string no_claim_text(const ArmReport& arm) {
 }
 
 bool has_run(const Report& report, const std::string& scenario) {
-    return std::any_of(report.arms.begin(), report.arms.end(),
-                       [&](const ArmReport& arm) { return arm.scenario == scenario && !arm.not_run(); });
-}
-
-/// Whether its runs are counted by their segments, or would be if there were more of these.
-bool is_of_logs(const ArmReport& arm) {
-    const SegmentEvidence& segments = arm.evidence.segments;
-    return segments.count || (segments.steps_of_runs > 0 && (arm.trials == 1 || segments.outnumber(arm.trials)));
-}
-
-/// `one log of 3000 steps, worth about 55 independent runs (segments of 54 steps)`
-std::string log_text(const ArmReport& arm) {
-    const SegmentEvidence& segments = arm.evidence.segments;
-    const std::string runs = arm.trials == 1 ? "one log of " : std::to_string(arm.trials) + " runs of together ",
-                      text = runs + std::to_string(segments.steps_of_runs) + " steps";
-    if (segments.steps == 0) return text;
-    return text + ", worth about " + segments.worth() + " (segments of " + std::to_string(segments.steps) + " steps)";
-}
-
-std::string trials_text(const Report& report) {
-    if (report.arms.size() == 1)
-        if (const ArmReport& arm = report.arms.front(); is_of_logs(arm)) return log_text(arm);
-    std::int64_t least = 0, most = 0;
-    std::size_t run = 0;
-    for (const ArmReport& arm : report.arms) {
-        if (arm.not_run()) continue;
-        least = run == 0 ? arm.trials : std::min(least, arm.trials);
-        most = std::max(most, arm.trials);
-        ++run;
-    }
-    const std::string text = (least == most ? "" : std::to_string(least) + " to ") + std::to_string(most) +
-                             (most == 1 ? " trial" : " trials");
-    if (!report.root_seed) return text;
-    return text + " of each arm" + (run == 0 || run == report.arms.size() ? "" : " run so far") + ", root seed " +
-           std::to_string(*report.root_seed);
+    return std::ranges::any_of(report.arms,
+                               [&](const ArmReport& arm) { return arm.scenario == scenario && !arm.not_run(); });
 }
 
 std::vector<Reason> reasons_of(const ArmReport& arm) {
@@ -251,8 +213,7 @@ std::vector<Reason> reasons_of(const ArmReport& arm) {
     list(Fault::pessimistic, "directions", true);
     list(Fault::biased, "mean error/sigma");
     list(Fault::correlated, "whitened innovations");
-    if (std::any_of(arm.evidence.whiteness.begin(), arm.evidence.whiteness.end(),
-                    [](const Whiteness& lag) { return !lag.known(); }))
+    if (!std::ranges::all_of(arm.evidence.whiteness, &Whiteness::known))
         reasons.push_back({"note, innovations: their correlation could not be computed", {}});
     if (verdict.attribution) reasons.push_back({sentence(*verdict.attribution), {}});
     for (const std::string& hint : verdict.hints) reasons.push_back({"hint: " + hint, {}});
@@ -276,9 +237,8 @@ std::vector<Reason> reasons_of(const ArmReport& arm) {
 }
 
 const ColumnReport& column_named(const std::vector<ColumnReport>& columns, const std::string& name) {
-    for (const ColumnReport& column : columns)
-        if (column.name == name) return column;
-    return columns.front();
+    const auto found = std::ranges::find(columns, name, &ColumnReport::name);
+    return found == columns.end() ? columns.front() : *found;
 }
 
 std::string column_title(const std::string& column, const std::string& unit) {
@@ -329,9 +289,8 @@ WorstDistribution worst_distribution(const DistributionEvidence& distribution) {
 }
 
 int lags_outside(const std::vector<Whiteness>& whiteness) {
-    return static_cast<int>(std::count_if(whiteness.begin(), whiteness.end(), [](const Whiteness& lag) {
-        return std::abs(lag.scaled) > lag.simultaneous_bound;
-    }));
+    const auto is_outside = [](const Whiteness& lag) { return std::abs(lag.scaled) > lag.simultaneous_bound; };
+    return static_cast<int>(std::ranges::count_if(whiteness, is_outside));
 }
 
 std::string of_steps(int outside, int steps) { return std::to_string(outside) + " of " + std::to_string(steps); }

@@ -8,6 +8,10 @@
 #include <string_view>
 #include <vector>
 
+namespace credence {
+class Svg;
+}
+
 namespace credence::page {
 
 /// The data for one scenario's section.
@@ -46,7 +50,6 @@ Html difference_spread_table(const Comparison& pair);
 /// Component groups, coverage, NIS, whiteness, distribution and credibility.
 Html evidence_tables(const Part& part);
 
-
 /// All charts of a scenario.
 Html charts(const Part& part);
 
@@ -55,6 +58,9 @@ std::string column_words(const std::string& name, const std::string& unit);
 
 /// One drawing with its caption.
 Html chart(const std::string& caption, const Html& svg);
+/// The same of the scenario: `what` is the end of its id, and `title` and `description` are its text alternative.
+Html chart(const Part& part, const std::string& caption, const Svg& svg, const std::string& what,
+           const std::string& title, const std::string& description);
 /// Drawings side by side under a heading, with a description; empty without drawings.
 Html chart_group(const std::string& head, const std::string& text, const Html& drawings);
 /// The text in place of charts of distributions, where no trial is kept.

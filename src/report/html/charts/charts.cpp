@@ -83,6 +83,11 @@ Html chart(const std::string& caption, const Html& svg) {
     return element("figure", element("figcaption", escaped(caption)) + "\n"_html + svg) + "\n"_html;
 }
 
+Html chart(const Part& part, const std::string& caption, const Svg& svg, const std::string& what,
+           const std::string& title, const std::string& description) {
+    return chart(caption, svg.html(part.id(what), part.scenario.name + ": " + title, description));
+}
+
 Html chart_group(const std::string& head, const std::string& text, const Html& drawings) {
     if (drawings.empty()) return {};
     return element("h4", escaped(head)) + "\n"_html + element("p", escaped(text)) + "\n<div class=\"charts\">\n"_html +
@@ -132,9 +137,8 @@ Html equivalence_chart(const Part& part) {
         svg.mark({x(group.run.mean), y}, arm, says);
         described += says + ". ";
     });
-    return chart(
-        "NEES/dim by group against the margin",
-        svg.html(part.id("equivalence"), part.scenario.name + ": NEES/dim by group against the margin", described));
+    const std::string title = "NEES/dim by group against the margin";
+    return chart(part, title, svg, "equivalence", title, described);
 }
 
 Html coverage_chart(const Part& part) {
@@ -166,8 +170,7 @@ Html coverage_chart(const Part& part) {
             described += says + (level.level < 0.99 ? ", " : ". ");
         }
     });
-    return chart("Coverage, mean over the steps",
-                 svg.html(part.id("coverage"), part.scenario.name + ": coverage by group", described));
+    return chart(part, "Coverage, mean over the steps", svg, "coverage", "coverage by group", described);
 }
 
 Html charts(const Part& part) {

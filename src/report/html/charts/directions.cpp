@@ -53,9 +53,8 @@ Html spectrum_chart(const Part& part) {
             svg.mark({x(ratio), y}, i, part.arms[i]->arm + ": " + short_number(ratio));
         described += says + ". ";
     }
-    return chart(
-        "Directions of the whole state",
-        svg.html(part.id("directions"), part.scenario.name + ": squared error over P's, by direction", described));
+    return chart(part, "Directions of the whole state", svg, "directions", "squared error over P's, by direction",
+                 described);
 }
 
 /// An ellipse with these half-axes about a centre, as a closed path.
@@ -91,9 +90,8 @@ Html ellipse_chart(const Part& part, std::size_t i) {
     svg.text({width / 2, height - 8}, Anchor::middle, "↑ " + shortened(smallest->name, most));
     const std::string says = arm.arm + ": the errors are " + short_number(wide) + " times as large as P says along " +
                              largest->name + ", and " + short_number(high) + " times along " + smallest->name;
-    return chart(
-        arm.arm + ": errors (line) against P (circle)",
-        svg.html(part.id("ellipse-" + std::to_string(i)), part.scenario.name + ": worst plane of " + arm.arm, says));
+    return chart(part, arm.arm + ": errors (line) against P (circle)", svg, "ellipse-" + std::to_string(i),
+                 "worst plane of " + arm.arm, says);
 }
 
 /// `0.70711 x, -0.70711 y`

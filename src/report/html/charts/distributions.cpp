@@ -118,7 +118,7 @@ Html distribution(const Part& part, const std::string& name, const std::vector<S
     for (std::size_t i = 0; i < samples.size(); ++i)
         described += draw_sample(svg, x, samples[i], top + row * static_cast<double>(i + 1) - 18);
     Axes{x, {ScaleKind::linear, 0, 1, foot + 10, top}, title, "", 6, 0}.draw(svg);
-    return chart(title, svg.html(part.id(name), part.scenario.name + ": distribution of " + title, described));
+    return chart(part, title, svg, name, "distribution of " + title, described);
 }
 
 Html difference(const Comparison& pair, const ComparedColumn& column, const std::string& id) {

@@ -1,4 +1,4 @@
-// The page's charts by step and by lag: a panel for each component group, each group of rows, each arm.
+// The page's charts by step: a panel for each component group and each group of rows.
 
 #include "base/thinned.hpp"
 #include "report/format.hpp"
@@ -9,6 +9,7 @@
 
 #include <credence/text.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -65,8 +66,9 @@ Scale upward(const std::vector<Panel>& panels, double logarithmic_from) {
         for (const Series& series : panel.series)
             for (std::size_t k = 0; k < series.ratio->ratio.size(); ++k) {
                 range.include(series.ratio->ratio[k]);
-                if (series.ratio->simultaneous_band[k].low > 0) range.include(series.ratio->simultaneous_band[k].low);
-                range.include(series.ratio->simultaneous_band[k].high);
+                const Interval& band = series.ratio->simultaneous_band[k];
+                if (band.low > 0) range.include(band.low);
+                range.include(band.high);
             }
     return range.scale(bottom, top, logarithmic_from);
 }
@@ -94,11 +96,9 @@ void draw_band(Svg& svg, const Axes& axes, const Across& x, const std::vector<In
     svg.area(upper, lower, classes);
 }
 
-bool same_bands(const BandedRatio& a, const BandedRatio& b) { return a.degrees == b.degrees; }
-
 void draw_bands(Svg& svg, const Axes& axes, const Across& x, const Panel& panel) {
     for (std::size_t i = 0; i < panel.series.size(); ++i) {
-        if (i > 0 && same_bands(*panel.series[i].ratio, *panel.series.front().ratio)) continue;
+        if (i > 0 && panel.series[i].ratio->degrees == panel.series.front().ratio->degrees) continue;  // the same bands
         draw_band(svg, axes, x, panel.series[i].ratio->simultaneous_band, "band joint");
         draw_band(svg, axes, x, panel.series[i].ratio->band, "band");
     }
@@ -168,37 +168,17 @@ Html panels_html(const Part& part, const std::vector<Panel>& panels, const std::
         const std::vector<Series>& series = panels[i].series;
         for (std::size_t s = 0; s < series.size(); ++s) draw_series(svg, axes, x, series[s], s, series.size());
         draw_gaps(svg, x, run);
-        html +=
-            chart(panels[i].name, svg.html(part.id(what + std::to_string(i)),
-                                           part.scenario.name + ": " + measure + " of " + panels[i].name + " by step",
-                                           description(panels[i], measure)));
+        html += chart(part, panels[i].name, svg, what + std::to_string(i),
+                      measure + " of " + panels[i].name + " by step", description(panels[i], measure));
     }
     return html;
 }
 
-/// Collects panels by name: add(name, series).
-class Panels {
-public:
-    void add(const std::string& name, const Series& series) {
-        for (Panel& panel : panels_)
-            if (panel.name == name) return panel.series.push_back(series);
-        panels_.push_back({name, {series}});
-    }
-    const std::vector<Panel>& list() const { return panels_; }
-
-private:
-    std::vector<Panel> panels_;
-};
-
-void draw_whiteness_band(Svg& svg, const Axes& axes, const std::vector<Whiteness>& lags, double Whiteness::*bound,
-                         const std::string& classes) {
-    std::vector<ChartPoint> upper, lower;
-    for (const Whiteness& lag : lags)
-        for (const double x : {lag.lag - 0.5, lag.lag + 0.5}) {
-            upper.push_back({axes.x(x), axes.y(lag.*bound)});
-            lower.push_back({axes.x(x), axes.y(-(lag.*bound))});
-        }
-    svg.area(upper, lower, classes);
+/// Adds a series to the panel of that name.
+void add_to(std::vector<Panel>& panels, const std::string& name, const Series& series) {
+    auto panel = std::ranges::find(panels, name, &Panel::name);
+    if (panel == panels.end()) panel = panels.insert(panel, {name, {}});
+    panel->series.push_back(series);
 }
 
 /// Beside far smaller errors the band goes on outside.
@@ -211,7 +191,7 @@ Scale upward(const ErrorCurve& curve) {
     return range.scale(bottom, top, INFINITY);
 }
 
-Html error_chart(const Part& part, const RunCurves& run, const ErrorCurve& curve, const std::string& id,
+Html error_chart(const Part& part, const RunCurves& run, const ErrorCurve& curve, const std::string& what,
                  const std::string& of) {
     const std::string unit = with_powers(curve.unit);
     const Across x(run.times, static_cast<std::size_t>(part.scenario.poses - 1));
@@ -234,10 +214,9 @@ Html error_chart(const Part& part, const RunCurves& run, const ErrorCurve& curve
     draw_gaps(svg, x, run);
     svg.mark({x(worst->step), axes.y(worst->error)}, 0, says);
     const double share = static_cast<double>(curve.outside) / static_cast<double>(curve.steps);
-    return chart(of + ": " + percent(share) + " beyond two sigma",
-                 svg.html(id, part.scenario.name + ": error of " + of + " by step",
-                          std::to_string(curve.outside) + " of " + std::to_string(curve.steps) +
-                              " steps are beyond two sigma; " + says + "."));
+    return chart(part, of + ": " + percent(share) + " beyond two sigma", svg, what, "error of " + of + " by step",
+                 of_steps(static_cast<int>(curve.outside), static_cast<int>(curve.steps)) +
+                     " steps are beyond two sigma; " + says + ".");
 }
 
 }  // namespace
@@ -249,87 +228,26 @@ Html error_charts(const Part& part) {
     for (std::size_t i = 0; i < runs.size(); ++i)
         for (const ErrorCurve& curve : runs[i].errors)
             if (curve.steps > 0)
-                html += error_chart(part, runs[i], curve, part.id("error" + std::to_string(++number)),
+                html += error_chart(part, runs[i], curve, "error" + std::to_string(++number),
                                     (runs.size() > 1 ? "run " + std::to_string(i) + ", " : "") + curve.component);
     return html;
 }
 
-Html autocorrelation_chart(const Part& part) {
-    const SegmentEvidence& segments = part.arms.front()->evidence.segments;
-    const std::vector<double>& values = segments.correlation;
-    if (values.empty()) return {};
-    Range range;
-    range.include(0);
-    for (const double value : values) range.include(value);
-    const Axes axes{scale_between(ScaleKind::linear, 0, static_cast<double>(values.size() - 1), left, right),
-                    range.scale(bottom, top, INFINITY), "lag", "correlation"};
-    const auto at = [&](std::size_t lag) { return ChartPoint{axes.x(static_cast<double>(lag)), axes.y(values[lag])}; };
-    std::vector<ChartPoint> line;
-    for (const std::size_t lag : line_steps(values)) line.push_back(at(lag));
-    const std::string says = segments.window == 0 ? "does not decorrelate within half of the run"
-                                                  : number(segments.autocorrelation_time, 1) + " steps, cut at lag " +
-                                                        std::to_string(segments.window);
-    Svg svg(width, height);
-    axes.draw(svg);
-    svg.line({left, axes.y(0)}, {right, axes.y(0)}, "ideal");
-    svg.path(line, "line " + series_class(0));
-    const std::size_t end = segments.window > 0 ? segments.window : values.size() - 1;
-    svg.line({at(end).x, bottom}, {at(end).x, top}, "published", says);
-    svg.mark(at(end), 0, says);
-    return chart(segments.slowest + ": " + says,
-                 svg.html(part.id("autocorrelation"), part.scenario.name + ": autocorrelation by lag",
-                          segments.slowest + ": " + says + "."));
-}
-
 Html nees_panels(const Part& part) {
-    Panels panels;
+    std::vector<Panel> panels;
     for (std::size_t i = 0; i < part.arms.size(); ++i)
         if (part.arms[i]->evidence.trials > 0)
             for (const GroupEvidence* group : shown_groups(part.arms[i]->evidence))
-                panels.add(group->name, {part.arms[i]->arm, i, &group->anees});
-    return panels_html(part, panels.list(), "NEES/dim", "nees");
+                add_to(panels, group->name, {part.arms[i]->arm, i, &group->anees});
+    return panels_html(part, panels, "NEES/dim", "nees");
 }
 
 Html nis_panels(const Part& part) {
-    Panels panels;
+    std::vector<Panel> panels;
     for (std::size_t i = 0; i < part.arms.size(); ++i)
         for (const NisEvidence& nis : part.arms[i]->evidence.nis)
-            panels.add("rows: " + nis.part, {part.arms[i]->arm, i, &nis.nis});
-    return panels_html(part, panels.list(), "NIS/m", "nis");
-}
-
-Html whiteness_chart(const Part& part) {
-    Range range;
-    for (const ArmReport* arm : part.arms)
-        for (const Whiteness& lag : arm->evidence.whiteness)
-            for (const double value : {lag.scaled, lag.simultaneous_bound, -lag.simultaneous_bound})
-                range.include(value);
-    if (!range.known) return {};
-    Html html;
-    for (std::size_t i = 0; i < part.arms.size(); ++i) {
-        const std::vector<Whiteness>& lags = part.arms[i]->evidence.whiteness;
-        if (lags.empty()) continue;
-        const Scale x{ScaleKind::linear, 0.5, lags.back().lag + 0.5, left, right};
-        const Axes axes{x, range.scale(bottom, top, INFINITY), "lag", "correlation", std::min(10, lags.back().lag), 5};
-        Svg svg(width, height);
-        draw_whiteness_band(svg, axes, lags, &Whiteness::simultaneous_bound, "band joint");
-        draw_whiteness_band(svg, axes, lags, &Whiteness::bound, "band");
-        axes.draw(svg);
-        svg.line({left, axes.y(0)}, {right, axes.y(0)}, "ideal");
-        std::string described = part.arms[i]->arm + ": ";
-        for (const Whiteness& lag : lags) {
-            if (!lag.known()) continue;
-            const std::string says = "lag " + std::to_string(lag.lag) + ": " + short_number(lag.scaled) +
-                                     " (white within ± " + short_number(lag.bound) + ")";
-            svg.line({x(lag.lag), axes.y(0)}, {x(lag.lag), axes.y(lag.scaled)}, "line " + series_class(i));
-            svg.mark({x(lag.lag), axes.y(lag.scaled)}, i, part.arms[i]->arm + ", " + says);
-            described += says + ". ";
-        }
-        html +=
-            chart(part.arms[i]->arm, svg.html(part.id("whiteness" + std::to_string(i)),
-                                              part.scenario.name + ": correlation of innovations by lag", described));
-    }
-    return html;
+            add_to(panels, "rows: " + nis.part, {part.arms[i]->arm, i, &nis.nis});
+    return panels_html(part, panels, "NIS/m", "nis");
 }
 
 }  // namespace credence::page
