@@ -1,4 +1,4 @@
-#include "record/about_means.hpp"
+// The errors of a record about their mean over the trials, step by step [docs/statistics.md, Attribution].
 
 #include "record/read.hpp"
 #include "record/totals.hpp"

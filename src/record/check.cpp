@@ -1,7 +1,7 @@
 // Checks the values of a step of a record. A covariance that is not symmetric is refused, with its dataset, trial and
 // step; a value that is not finite makes the trial fail at this step, as a failure of the filter and not of the record.
 
-#include "record/check.hpp"
+#include "record/presence.hpp"
 
 #include <credence/text.hpp>
 

@@ -1,6 +1,6 @@
 #include "record/known.hpp"
 
-#include "record/check.hpp"
+#include "record/presence.hpp"
 #include "record/layout/groups.hpp"
 #include "record/reader.hpp"
 
@@ -37,11 +37,11 @@ KnownSearch::KnownSearch(const RecordShape& shape)
 
 bool KnownSearch::goes_on() const { return std::ranges::count(open_, 1) > 0; }
 
-void KnownSearch::see_error(const double* error) {
+void KnownSearch::see(const double* values) {
     for (std::size_t j = 0; j < open_.size(); ++j) {
-        if (std::isnan(error[j])) continue;
+        if (std::isnan(values[j])) continue;
         seen_[j] = 1;
-        if (error[j] != 0) open_[j] = 0;
+        if (values[j] != 0) open_[j] = 0;
     }
 }
 
@@ -65,15 +65,8 @@ void KnownSearch::see_matrix(const double* values, const std::vector<int>& compo
 }
 
 void KnownSearch::see_covariances(const RecordStep& step) {
-    if (step.covariance != nullptr && shape_.has_variances) {
-        for (std::size_t j = 0; j < open_.size(); ++j) {
-            if (std::isnan(step.covariance[j])) continue;
-            seen_[j] = 1;
-            if (step.covariance[j] != 0) open_[j] = 0;
-        }
-    } else if (step.covariance != nullptr) {
-        see_matrix(step.covariance, counted_up(shape_.n));
-    }
+    if (step.covariance != nullptr && shape_.has_variances) see(step.covariance);
+    else if (step.covariance != nullptr) see_matrix(step.covariance, counted_up(shape_.n));
     for (std::size_t b = 0; b < step.own.size(); ++b)
         if (step.own[b] != nullptr && shape_.source(b) == GroupSource::own)
             see_matrix(step.own[b], members_of(shape_.groups[b]));

@@ -20,8 +20,8 @@ public:
     /// Whether a component may still be one.
     bool goes_on() const;
     void start();
-    /// Looks at a step's error [n]; NaN says nothing.
-    void see_error(const double* error);
+    /// Looks at a step's error, or at its variances [n]; NaN says nothing.
+    void see(const double* values);
     /// After all errors: those that were never seen are none.
     void end_errors();
     /// Looks at what a step has of covariances.

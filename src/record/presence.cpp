@@ -1,7 +1,6 @@
 #include "record/presence.hpp"
 
 #include "base/nan.hpp"
-#include "record/check.hpp"
 #include "record/source.hpp"
 
 #include <algorithm>
@@ -20,13 +19,12 @@ PresenceChecker::PresenceChecker(const RecordShape& shape)
     for (const ComponentGroup& group : shape.groups) members_.push_back(members_of(group));
 }
 
-void PresenceChecker::start_trial() {
-    std::ranges::fill(components_, Stay::before);
-    std::ranges::fill(groups_, Stay::before);
-}
-
 Presence PresenceChecker::check(const RecordStep& step, CheckedStep& checked) {
-    if (!exists(step)) return Presence::absent;
+    if (step.step == 0) {
+        std::ranges::fill(components_, Stay::before);
+        std::ranges::fill(groups_, Stay::before);
+    }
+    if (!shape_.covers(step.trial, step.step) || !exists(step)) return Presence::absent;
     checked.broken = read(step, checked);
     return checked.broken.empty() ? Presence::there : Presence::broken;
 }

@@ -90,7 +90,7 @@ std::vector<char> RecordReader::known_components() const {
         });
         values = {};
     };
-    const auto see_error = [&](const RecordStep& step) { search.see_error(step.error); };
+    const auto see_error = [&](const RecordStep& step) { search.see(step.error); };
     const auto see_covariances = [&](const RecordStep& step) { search.see_covariances(step); };
     look(&RecordReader::read_covariances, see_covariances, false);  // of the first part, which end most searches
     search.start();

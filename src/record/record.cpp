@@ -2,13 +2,13 @@
 
 #include <credence/error.hpp>
 
-#include "record/about_means.hpp"
 #include "record/presence.hpp"
 #include "record/segments.hpp"
 #include "record/totals.hpp"
 
 #include <algorithm>
 #include <chrono>
+#include <type_traits>
 
 namespace credence {
 
@@ -27,14 +27,20 @@ void each_step(const RecordReader& reader, const std::function<void(const Record
     });
 }
 
-void each_present_step(const RecordReader& reader,
-                       const std::function<void(const RecordStep&, const CheckedStep&)>& use) {
+void each_checked_step(const RecordReader& reader,
+                       const std::function<void(const RecordStep&, Presence, const CheckedStep&)>& use) {
     PresenceChecker presence(reader.shape());
     CheckedStep checked;
     each_step(reader, [&](const RecordStep& step) {
-        if (step.step == 0) presence.start_trial();
-        if (reader.shape().covers(step.trial, step.step) && presence.check(step, checked) == Presence::there)
-            use(step, checked);
+        const Presence found = presence.check(step, checked);
+        use(step, found, checked);
+    });
+}
+
+void each_present_step(const RecordReader& reader,
+                       const std::function<void(const RecordStep&, const CheckedStep&)>& use) {
+    each_checked_step(reader, [&](const RecordStep& step, Presence presence, const CheckedStep& checked) {
+        if (presence == Presence::there) use(step, checked);
     });
 }
 
@@ -57,6 +63,14 @@ Record read_record(const RecordReader& reader, const std::string& name, const Re
         return read_record(reader, name, progress, segments, DivergedTrials::counted, copies);
     record.segments = planner.finish(reader, name);
     return record;
+}
+
+/// What `use` makes of the record, opened once more.
+template <class Use>
+auto of_reader(const OpenAgain& open_again, const Use& use) {
+    std::invoke_result_t<Use, RecordReader> made;
+    open_again([&](RecordReader again) { made = use(std::move(again)); });
+    return made;
 }
 
 /// What `use` makes of a reader of arrays, a part of which fits a cache; errors have the places and remedies of arrays.
@@ -87,13 +101,12 @@ Record read_record(RecordReader reader, const std::string& name, const ReportPro
     if (charts > 1) record.chart = manifold->chart();
     for (int other = 1; other < charts; ++other)
         record.in_other_charts.push_back([=] {
-            Record read;
-            open_again([&](RecordReader again) {
+            return of_reader(open_again, [&](RecordReader again) {
                 again.manifold()->take_chart(other);
-                read = read_record(again, name, {}, segments);
+                Record read = read_record(again, name, {}, segments);
                 read.chart = again.manifold()->chart();
+                return read;
             });
-            return read;
         });
     std::vector<char> counted;
     const ArmResults& arm = record.results.arms.front();
@@ -102,9 +115,8 @@ Record read_record(RecordReader reader, const std::string& name, const ReportPro
         counted.push_back(counts(static_cast<Status>(static_cast<int>(status))));
     if (std::ranges::count(counted, 1) >= least_segments && has_step_means(reader.shape()))
         record.about_means = [=] {
-            AboutMeans about;
-            open_again([&](const RecordReader& again) { about = read_about_means(again, name, counted); });
-            return about;
+            return of_reader(open_again,
+                             [&](const RecordReader& again) { return read_about_means(again, name, counted); });
         };
     std::vector<char> judged = counted;
     const TrialTotals& totals = arm.totals.trials;
@@ -113,19 +125,16 @@ Record read_record(RecordReader reader, const std::string& name, const ReportPro
         judged[i] = !failed(static_cast<Status>(static_cast<int>(statuses[i])));
     if (reader.shape().has_joint() || reader.shape().has_variances)
         record.sample = [=, segments_found = record.segments.found](const std::vector<int>& components) {
-            SampledSteps sample;
-            open_again([&](const RecordReader& again) {
-                sample = sampled_steps(again, components, judged, segments_found);
+            return of_reader(open_again, [&](const RecordReader& again) {
+                return sampled_steps(again, components, judged, segments_found);
             });
-            return sample;
         };
     if (reader.shape().has_truth_covariance)
         record.truth = truth_evidence(reader, name, segments);
     else if (reader.shape().has_joint() || reader.shape().has_variances)
         record.truth_sigmas = [=](const std::vector<int>& components, const std::vector<double>& nees) {
-            std::vector<double> sigmas;
-            open_again([&](RecordReader again) { sigmas = truth_sigmas(again, components, nees); });
-            return sigmas;
+            return of_reader(open_again,
+                             [&](const RecordReader& again) { return truth_sigmas(again, components, nees); });
         };
     return record;
 }
@@ -139,14 +148,7 @@ Record read_record(const RecordArrays& arrays, const std::string& name, const Re
 }
 
 void check_record(const RecordArrays& arrays) {
-    with_reader(arrays, [](const RecordReader& reader) {
-        PresenceChecker presence(reader.shape());
-        CheckedStep checked;
-        each_step(reader, [&](const RecordStep& step) {
-            if (step.step == 0) presence.start_trial();
-            if (reader.shape().covers(step.trial, step.step)) presence.check(step, checked);
-        });
-    });
+    with_reader(arrays, [](const RecordReader& reader) { each_checked_step(reader, [](const auto&...) {}); });
 }
 
 }  // namespace credence

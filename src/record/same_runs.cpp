@@ -2,7 +2,6 @@
 
 #include <credence/text.hpp>
 
-#include "record/presence.hpp"
 #include "record/read.hpp"
 
 #include <algorithm>
@@ -91,13 +90,10 @@ void SharedSteps::add(const RecordReader& reader) {
     require_equal(shape.n, n, "components that are not known exactly");
     of_each.push_back(0);
     of_any = of_all = 0;
-    PresenceChecker presence(shape);
-    CheckedStep checked;
-    each_step(reader, [&](const RecordStep& step) {
-        if (step.step == 0) presence.start_trial();
+    each_checked_step(reader, [&](const RecordStep& step, Presence presence, const CheckedStep& checked) {
         std::uint32_t &known = states[static_cast<std::size_t>(step.trial * steps + step.step)], state = 0;
         // A run with a broken step fails, so that it is in no pair.
-        if (shape.covers(step.trial, step.step) && presence.check(step, checked) != Presence::absent) {
+        if (presence != Presence::absent) {
             const std::string_view here(checked.here.data(), checked.here.size());
             const bool whole = here.find('\0') == here.npos;
             state = whole ? 2 : std::max<std::uint32_t>(3, std::hash<std::string_view>()(here) & 0xffffffff);

@@ -175,8 +175,7 @@ ScenarioResults SegmentPlanner::results(const RecordReader& reader, const std::s
     std::size_t next = 0;
     each_step(reader, [&](const RecordStep& one) {
         const bool inside = next < first_.size() && one.trial == found_.run[next] && one.step >= first_[next];
-        if (adds && one.step == 0) presence.start_trial();
-        if (adds && reader.shape().covers(one.trial, one.step) && presence.check(one, checked) == Presence::there)
+        if (adds && presence.check(one, checked) == Presence::there)
             add_errors(checked, means->of_run[static_cast<std::size_t>(one.trial)],
                        inside ? &means->of_segment[next] : nullptr);
         if (!inside) return;

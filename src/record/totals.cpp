@@ -57,15 +57,14 @@ RecordTotals::RecordTotals(const RecordShape& shape, const std::string& path, Di
 
 void RecordTotals::add(const RecordStep& step) {
     if (step.step == 0) start_trial();
-    if (!failed(status_)) add_covered(step);  // the filter's values after a failure are ignored
+    if (!failed(status_)) add_existing(step);  // the filter's values after a failure are ignored
     if (step.step + 1 < shape_.steps) return;
     if (!failed(status_)) check_end(step.trial);
     end_trial(step.trial);
 }
 
-void RecordTotals::add_covered(const RecordStep& step) {
-    const bool covered = shape_.covers(step.trial, step.step);
-    switch (covered ? presence_.check(step, checked_) : Presence::absent) {
+void RecordTotals::add_existing(const RecordStep& step) {
+    switch (presence_.check(step, checked_)) {
         case Presence::there: return add_figures(step, checked_);
         case Presence::broken: return note(step, Status::non_finite, checked_.broken);
         case Presence::absent: break;
@@ -96,7 +95,6 @@ void RecordTotals::check_copy(std::int64_t trial) {
 
 void RecordTotals::start_trial() {
     status_ = Status::completed;
-    presence_.start_trial();
     present_.clear();
     end_ = 0;
     products_.start_trial();

@@ -8,13 +8,10 @@
 #include <vector>
 
 #include "record/alike.hpp"
-#include "record/copies.hpp"
-#include "record/gaps.hpp"
 #include "record/presence.hpp"
 #include "record/reader.hpp"
-#include "record/row_products.hpp"
+#include "record/runs.hpp"
 #include "record/moments.hpp"
-#include "record/step.hpp"
 
 namespace credence {
 
@@ -57,7 +54,7 @@ private:
     double& series(std::size_t f, std::size_t k) { return values_[k * all_series_.list.size() + f]; }
 
     void start_trial();
-    void add_covered(const RecordStep& step);
+    void add_existing(const RecordStep& step);
     void add_figures(const RecordStep& step, const CheckedStep& checked);
     void note(const RecordStep& step, Status status, const std::string& what);
     void note_diverged(std::int64_t trial, double nees_ratio);

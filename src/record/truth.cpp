@@ -5,7 +5,7 @@
 
 #include "base/nan.hpp"
 #include "numeric/decompositions.hpp"
-#include "record/check.hpp"
+#include "record/presence.hpp"
 #include "record/read.hpp"
 
 namespace credence {

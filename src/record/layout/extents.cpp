@@ -1,4 +1,6 @@
-#include "record/layout/extents.hpp"
+// Checks of the extents of a record's datasets against each other.
+
+#include "record/layout/parts.hpp"
 
 #include <algorithm>
 

@@ -6,8 +6,7 @@
 #include <map>
 #include <numbers>
 
-#include "record/check.hpp"
-#include "record/layout/extents.hpp"
+#include "record/presence.hpp"
 #include "record/layout/parts.hpp"
 
 namespace credence {
