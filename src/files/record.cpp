@@ -25,19 +25,15 @@ auto at_path(const Handle& group, const std::string& path, const Use& use) {
     return at_path(hdf5::open_group(group, path.substr(0, slash)), path.substr(slash + 1), use);
 }
 
-class FileDataset : public RecordDataset {
-public:
-    explicit FileDataset(hdf5::RealDataset dataset)
-        : RecordDataset(dataset.place(), {dataset.extents().begin(), dataset.extents().end()}, dataset.epsilon(),
-                        dataset.chunk().empty() ? 1 : dataset.chunk().front()),
-          dataset_(std::move(dataset)) {}
-    void read(const RecordExtents& first, const RecordExtents& count, std::vector<double>& values) const override {
-        dataset_.read({first.begin(), first.end()}, {count.begin(), count.end()}, values);
-    }
-
-private:
-    hdf5::RealDataset dataset_;
-};
+DatasetPointer file_dataset(const Handle& group, const std::string& name, Numbers numbers) {
+    const auto dataset = std::make_shared<const hdf5::RealDataset>(group, name, numbers == Numbers::any);
+    return std::make_shared<RecordDataset>(
+        dataset->place(), RecordExtents(dataset->extents().begin(), dataset->extents().end()), dataset->epsilon(),
+        dataset->chunk().empty() ? 1 : dataset->chunk().front(),
+        [dataset](const RecordExtents& first, const RecordExtents& count, std::vector<double>& values) {
+            dataset->read({first.begin(), first.end()}, {count.begin(), count.end()}, values);
+        });
+}
 
 /// Throws where `name` is a group, as Octave's own `save -hdf5` writes variables.
 void refuse_group(const Handle& parent, const std::string& name) {
@@ -142,9 +138,9 @@ bool FileSource::has(const std::string& path) const {
 }
 
 DatasetPointer FileSource::open(const std::string& path, Numbers numbers) const {
-    return at_path(root_, path, [&](const Handle& group, const std::string& name) -> DatasetPointer {
+    return at_path(root_, path, [&](const Handle& group, const std::string& name) {
         refuse_group(group, name);
-        return std::make_unique<FileDataset>(hdf5::RealDataset(group, name, numbers == Numbers::any));
+        return file_dataset(group, name, numbers);
     });
 }
 

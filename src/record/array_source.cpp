@@ -1,6 +1,7 @@
 // A record in arrays in memory, of doubles or singles with any strides.
 
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "record/source.hpp"
@@ -18,39 +19,29 @@ double* copy(const T* from, const std::int64_t* strides, const std::uint64_t* co
     return to;
 }
 
-class ArrayDataset : public RecordDataset {
-public:
-    explicit ArrayDataset(const RecordArray& array)
-        : RecordDataset(record_place(array.path), {array.extents.begin(), array.extents.end()}, array.epsilon, 1),
-          array_(array) {}
-
-    void read(const RecordExtents& first, const RecordExtents& count, std::vector<double>& values) const override {
-        std::int64_t start = 0;
-        for (std::size_t axis = 0; axis < first.size(); ++axis)
-            start += static_cast<std::int64_t>(first[axis]) * array_.strides[axis];
-        if (array_.type == RecordArray::Type::real64)
-            read_from(static_cast<const double*>(array_.data) + start, count, values);
-        else
-            read_from(static_cast<const float*>(array_.data) + start, count, values);
+/// Axes of which the later one lies within the earlier one without gaps are copied as one.
+template <class T>
+void read_from(const T* from, std::vector<std::int64_t> strides, RecordExtents count, std::vector<double>& values) {
+    for (std::size_t axis = count.size() - 1; axis > 0; --axis) {
+        if (strides[axis - 1] != strides[axis] * static_cast<std::int64_t>(count[axis])) continue;
+        count[axis - 1] *= count[axis];
+        strides[axis - 1] = strides[axis];
+        count.erase(count.begin() + static_cast<std::ptrdiff_t>(axis));
+        strides.erase(strides.begin() + static_cast<std::ptrdiff_t>(axis));
     }
+    copy(from, strides.data(), count.data(), count.size(), values.data());
+}
 
-private:
-    /// Axes of which the later one lies within the earlier one without gaps are copied as one.
-    template <class T>
-    void read_from(const T* from, RecordExtents count, std::vector<double>& values) const {
-        std::vector<std::int64_t> strides = array_.strides;
-        for (std::size_t axis = count.size() - 1; axis > 0; --axis) {
-            if (strides[axis - 1] != strides[axis] * static_cast<std::int64_t>(count[axis])) continue;
-            count[axis - 1] *= count[axis];
-            strides[axis - 1] = strides[axis];
-            count.erase(count.begin() + static_cast<std::ptrdiff_t>(axis));
-            strides.erase(strides.begin() + static_cast<std::ptrdiff_t>(axis));
-        }
-        copy(from, strides.data(), count.data(), count.size(), values.data());
-    }
-
-    const RecordArray& array_;
-};
+void read_array(const RecordArray& array, const RecordExtents& first, const RecordExtents& count,
+                std::vector<double>& values) {
+    std::int64_t start = 0;
+    for (std::size_t axis = 0; axis < first.size(); ++axis)
+        start += static_cast<std::int64_t>(first[axis]) * array.strides[axis];
+    if (array.type == RecordArray::Type::real64)
+        read_from(static_cast<const double*>(array.data) + start, array.strides, count, values);
+    else
+        read_from(static_cast<const float*>(array.data) + start, array.strides, count, values);
+}
 
 }  // namespace
 
@@ -64,7 +55,9 @@ DatasetPointer ArraySource::open(const std::string& path, Numbers) const {
     const auto found = std::ranges::find(record_.arrays, path, &RecordArray::path);
     if (found == record_.arrays.end()) throw RecordError(record_place(path), "is missing");
     if (found->extents.empty()) throw RecordError(record_place(path), "has no extents", "Give an array");
-    return std::make_unique<ArrayDataset>(*found);
+    return std::make_shared<RecordDataset>(record_place(path),
+                                           RecordExtents(found->extents.begin(), found->extents.end()), found->epsilon,
+                                           1, std::bind_front(read_array, std::cref(*found)));
 }
 
 std::vector<std::string> ArraySource::names_in(const std::string& group) const {

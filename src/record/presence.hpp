@@ -27,8 +27,9 @@ bool read_symmetric(const std::string& dataset, const RecordStep& step, const do
 /// nothing is.
 std::string read_innovation(const RecordStep& step, const RecordShape& shape, CheckedStep& checked);
 
-/// Receives the steps of each trial in order, from its first one on. A component is in the state at the steps at which its error is a number: at
-/// successive ones, steps that do not exist apart. Where it is not, its rows and columns of every covariance are NaN.
+/// Receives the steps of each trial in order, from its first one on. A component is in the state at the steps at which
+/// its error is a number: at successive ones, steps that do not exist apart. Where it is not, its rows and columns of
+/// every covariance are NaN.
 class PresenceChecker {
 public:
     explicit PresenceChecker(const RecordShape& shape);

@@ -7,6 +7,7 @@
 #include <credence/record.hpp>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -36,12 +37,17 @@ enum class Numbers { floating, any };
 /// A dataset of a record, read in parts as doubles.
 class RecordDataset {
 public:
-    RecordDataset(std::string place, RecordExtents extents, double epsilon, std::uint64_t chunk)
-        : place_(std::move(place)), extents_(std::move(extents)), epsilon_(epsilon), chunk_(chunk) {}
-    virtual ~RecordDataset() = default;
-    RecordDataset(const RecordDataset&) = delete;
-    RecordDataset& operator=(const RecordDataset&) = delete;
+    /// Values at first ... first + count - 1 in each dimension, row-major. `values` has as many.
+    using Read =
+        std::function<void(const RecordExtents& first, const RecordExtents& count, std::vector<double>& values)>;
+    RecordDataset(std::string place, RecordExtents extents, double epsilon, std::uint64_t chunk, Read read_part)
+        : read(std::move(read_part)),
+          place_(std::move(place)),
+          extents_(std::move(extents)),
+          epsilon_(epsilon),
+          chunk_(chunk) {}
 
+    const Read read;
     const std::string& place() const { return place_; }
     const RecordExtents& extents() const { return extents_; }
     /// Distance of 1 from the next number of the type, at least 2^-52.
@@ -49,16 +55,13 @@ public:
     /// How many entries of the first dimension are stored together.
     std::uint64_t chunk() const { return chunk_; }
 
-    /// Values at first ... first + count - 1 in each dimension, row-major. `values` has as many.
-    virtual void read(const RecordExtents& first, const RecordExtents& count, std::vector<double>& values) const = 0;
-
 private:
     std::string place_;
     RecordExtents extents_;
     double epsilon_;
     std::uint64_t chunk_;
 };
-using DatasetPointer = std::unique_ptr<RecordDataset>;
+using DatasetPointer = std::shared_ptr<const RecordDataset>;
 
 /// The entries of a list, each of words: a name, and behind it the members of a group.
 using ListEntries = std::vector<std::vector<std::string>>;

@@ -15,14 +15,8 @@ namespace {
 
 /// The values of a column. A number that could not be averaged counts as none.
 std::vector<double> read_column(const RecordDataset& dataset, std::int64_t trials) {
-    const RecordExtents all{static_cast<std::uint64_t>(trials)};
-    if (dataset.extents() != all)
-        throw RecordError(dataset.place(),
-                          "does not fit: it is " + extents_text(dataset.extents()) + ", and there are " +
-                              std::to_string(trials) + " trials",
-                          "Write it as [trial], one number of each", "Give an array [trial], one number of each");
-    std::vector<double> values(static_cast<std::size_t>(trials));
-    dataset.read({0}, all, values);
+    std::vector<double> values = read_by_trial(dataset, trials, "Write it as [trial], one number of each",
+                                               "Give an array [trial], one number of each");
     std::ranges::replace_if(values, [](double value) { return !(std::abs(value) <= largest_number); }, nan);
     return values;
 }

@@ -66,6 +66,19 @@ void require_same_steps(const PlacedExtents& vectors, const RecordDataset& datas
                       written);
 }
 
+std::vector<double> read_by_trial(const RecordDataset& dataset, std::int64_t trials, const std::string& remedy,
+                                  const std::string& of_arrays) {
+    const RecordExtents all{static_cast<std::uint64_t>(trials)};
+    if (dataset.extents() != all)
+        throw RecordError(dataset.place(),
+                          "does not fit: it is " + extents_text(dataset.extents()) + ", and there are " +
+                              std::to_string(trials) + " trials",
+                          remedy, of_arrays);
+    std::vector<double> values(static_cast<std::size_t>(trials));
+    dataset.read({0}, all, values);
+    return values;
+}
+
 DatasetPointer open_optional(const RecordSource& source, const std::string& name, const std::string& other) {
     if (source.has(name)) return source.open(name);
     if (source.has(other))

@@ -12,26 +12,18 @@ namespace credence {
 namespace {
 
 /// S, with NaN for the rows that are not observed.
-class ObservedCovariance : public RecordDataset {
-public:
-    ObservedCovariance(DatasetPointer covariance, DatasetPointer innovation)
-        : RecordDataset(covariance->place(), covariance->extents(), covariance->epsilon(), covariance->chunk()),
-          covariance_(std::move(covariance)),
-          innovation_(std::move(innovation)) {}
-
-    void read(const RecordExtents& first, const RecordExtents& count, std::vector<double>& values) const override {
-        covariance_->read(first, count, values);
+DatasetPointer observed_covariance(const DatasetPointer& S, const DatasetPointer& nu) {
+    const auto read = [=](const RecordExtents& first, const RecordExtents& count, std::vector<double>& values) {
+        S->read(first, count, values);
         const RecordExtents start(first.begin(), first.end() - 1), size(count.begin(), count.end() - 1);
-        std::vector<double> innovation(values.size() / count.back());
-        innovation_->read(start, size, innovation);
         const std::size_t m = count.back();
+        std::vector<double> innovation(values.size() / m);
+        nu->read(start, size, innovation);
         for (std::size_t i = 0; i < values.size(); ++i)
             if (std::isnan(innovation[i / m]) || std::isnan(innovation[i / (m * m) * m + i % m])) values[i] = nan;
-    }
-
-private:
-    DatasetPointer covariance_, innovation_;
-};
+    };
+    return std::make_shared<RecordDataset>(S->place(), S->extents(), S->epsilon(), S->chunk(), read);
+}
 
 /// The innovations of a record under the names of errors.
 class InnovationSource : public RecordSource {
@@ -46,7 +38,7 @@ public:
         RecordExtents square = innovation->extents();
         square.push_back(square.back());
         if (dataset->extents() != square) return dataset;  // refused by name where it is checked
-        return std::make_unique<ObservedCovariance>(std::move(dataset), std::move(innovation));
+        return observed_covariance(dataset, innovation);
     }
     std::vector<std::string> names_in(const std::string&) const override { return {}; }
     bool has_attribute(const std::string& name, const std::string& path) const override {

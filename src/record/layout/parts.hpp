@@ -29,6 +29,10 @@ void require_between(const PlacedExtents& dataset, std::size_t axis, std::uint64
 void require_same_steps(const PlacedExtents& vectors, const RecordDataset& dataset, std::size_t rank,
                         const std::string& written);
 
+/// The numbers of a dataset [trial]. Throws where it has other extents; the remedies are how to write it.
+std::vector<double> read_by_trial(const RecordDataset& dataset, std::int64_t trials, const std::string& remedy,
+                                  const std::string& of_arrays = {});
+
 /// The dataset; null where neither it nor `other` is there. Throws where only one of them is.
 DatasetPointer open_optional(const RecordSource& source, const std::string& name, const std::string& other);
 

@@ -13,16 +13,8 @@ namespace credence {
 void add_steps(const RecordSource& source, RecordShape& shape) {
     if (!source.has("steps")) return;
     const DatasetPointer dataset = source.open("steps", Numbers::any);
-    const RecordExtents& extents = dataset->extents();
-    const RecordExtents all{static_cast<std::uint64_t>(shape.trials)};
-    if (extents != all)
-        throw RecordError(dataset->place(),
-                          "does not fit: it is " + extents_text(extents) + ", and there are " +
-                              std::to_string(shape.trials) + " trials",
-                          "Write it as [trial], the number of steps of each");
-    std::vector<double> values(static_cast<std::size_t>(shape.trials));
-    dataset->read({0}, all, values);
-    for (const double value : values) {
+    for (const double value :
+         read_by_trial(*dataset, shape.trials, "Write it as [trial], the number of steps of each")) {
         if (!(value >= 1 && value <= shape.steps && value == std::nearbyint(value)))
             throw RecordError(
                 dataset->place(),

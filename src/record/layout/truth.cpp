@@ -16,26 +16,18 @@ namespace {
 const std::string sigma_name = "truth_sigma", covariance_name = "truth_covariance", dependent_name = "truth_dependent";
 
 /// One matrix, or one for each step, as that of every trial and step.
-class RepeatedCovariance : public RecordDataset {
-public:
-    RepeatedCovariance(RecordExtents extents, std::vector<double> one, DatasetPointer by_step)
-        : RecordDataset(record_place(covariance_name), std::move(extents), 0, 1),
-          one_(std::move(one)),
-          by_step_(std::move(by_step)) {}
-
-    void read(const RecordExtents& first, const RecordExtents& count, std::vector<double>& values) const override {
-        std::vector<double> one = one_;
-        if (by_step_) {
+DatasetPointer repeated(const RecordExtents& extents, const std::vector<double>& matrix,
+                        const DatasetPointer& by_step = nullptr) {
+    const auto read = [=](const RecordExtents& first, const RecordExtents& count, std::vector<double>& values) {
+        std::vector<double> one = matrix;
+        if (by_step) {
             one.resize(count[1] * count[2] * count[3]);
-            by_step_->read({first.begin() + 1, first.end()}, {count.begin() + 1, count.end()}, one);
+            by_step->read({first.begin() + 1, first.end()}, {count.begin() + 1, count.end()}, one);
         }
         for (auto to = values.begin(); to != values.end(); to += std::ssize(one)) std::ranges::copy(one, to);
-    }
-
-private:
-    std::vector<double> one_;
-    DatasetPointer by_step_;
-};
+    };
+    return std::make_shared<RecordDataset>(record_place(covariance_name), extents, 0, 1, read);
+}
 
 [[noreturn]] void refuse_sigma(const std::string& entry, const std::string& why, const std::string& remedy) {
     throw RecordError(record_attribute_place(sigma_name), "`" + printable(entry) + "` " + why, remedy);
@@ -108,7 +100,7 @@ DatasetPointer open_truth(const RecordSource& source, const RecordExtents& all, 
         std::vector<double> variances(n, -1);
         for (const std::string& entry : split_list(source.text(sigma_name))) set_variances(entry, shape, variances);
         std::ranges::replace(variances, -1.0, 0.0);
-        return std::make_unique<RepeatedCovariance>(all, as_matrix(variances, n), nullptr);
+        return repeated(all, as_matrix(variances, n));
     }
     DatasetPointer dataset = source.open(covariance_name);
     const RecordExtents extents = dataset->extents();
@@ -116,14 +108,14 @@ DatasetPointer open_truth(const RecordSource& source, const RecordExtents& all, 
     if (extents == RecordExtents{n} || extents == RecordExtents{n, n}) {
         std::vector<double> values(extents.size() == 1 ? n : n * n);
         dataset->read(RecordExtents(extents.size()), extents, values);
-        return std::make_unique<RepeatedCovariance>(all, as_matrix(values, n), nullptr);
+        return repeated(all, as_matrix(values, n));
     }
     if (extents != RecordExtents{static_cast<std::uint64_t>(shape.steps), n, n})
         throw RecordError(record_place(covariance_name),
                           "does not fit: it is " + extents_text(extents) + ", and the error has " +
                               std::to_string(shape.steps) + " steps of " + std::to_string(n) + " components",
                           "Write it as [n], [n, n], [step, n, n] or [trial, step, n, n]");
-    return std::make_unique<RepeatedCovariance>(all, std::vector<double>(), std::move(dataset));
+    return repeated(all, {}, dataset);
 }
 
 }  // namespace
