@@ -5,7 +5,6 @@
 #include "files/stored_run.hpp"
 
 #include "files/journal/commit.hpp"
-#include "files/journal/totals.hpp"
 #include "store_study.hpp"
 #include "study_support.hpp"
 

@@ -8,7 +8,7 @@
 #include "report/format.hpp"
 #include "report/sweep.hpp"
 #include "report/words.hpp"
-#include "verdict/consistency_parts.hpp"
+#include "verdict/judgement.hpp"
 
 namespace credence {
 

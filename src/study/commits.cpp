@@ -1,4 +1,4 @@
-#include "study/commits.hpp"
+#include "study/run.hpp"
 
 namespace credence {
 

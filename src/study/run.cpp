@@ -3,8 +3,7 @@
 #include "base/idle_threads.hpp"
 #include "base/wording.hpp"
 #include "study/block_results.hpp"
-#include "study/commits.hpp"
-#include "study/schedule.hpp"
+#include "study/run.hpp"
 
 #include <credence/error.hpp>
 #include <credence/study.hpp>

@@ -1,4 +1,4 @@
-#include "study/schedule.hpp"
+#include "study/run.hpp"
 
 #include "study/block_results.hpp"
 

@@ -3,7 +3,6 @@
 #include <credence/statistics.hpp>
 
 #include "base/nan.hpp"
-#include "study/stopping_subject.hpp"
 
 #include <algorithm>
 #include <cmath>

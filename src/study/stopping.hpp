@@ -111,4 +111,15 @@ InterimAnalysis run_analyses(const StoppingRule& rule,
 InterimAnalysis run_until(Study& study, const StoppingRule& rule, RunOptions options,
                const std::function<void(const InterimAnalysis&)>& after_analysis = {});
 
+/// A mean that a goal asks for: of a column of one arm, or of the differences between two.
+struct StoppingSubject {
+    const ScenarioResults* results;
+    std::size_t column;
+    const ArmResults* arm;
+    const ArmResults* subtracted;  ///< null: not a difference
+};
+
+/// Throws as check_goals does; at least one.
+std::vector<StoppingSubject> subjects_of(const StoppingGoal& goal, const Study& study);
+
 }  // namespace credence

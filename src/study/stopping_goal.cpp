@@ -1,6 +1,6 @@
 // Parsing of goals, and their columns in a study.
 
-#include "study/stopping_subject.hpp"
+#include "study/stopping.hpp"
 
 #include "base/choice.hpp"
 #include "base/wording.hpp"

@@ -12,7 +12,7 @@
 
 #include "base/nan.hpp"
 #include "numeric/decompositions.hpp"
-#include "verdict/consistency_parts.hpp"
+#include "verdict/judgement.hpp"
 
 namespace credence {
 

@@ -3,7 +3,6 @@
 #include "statistics/goodness.hpp"
 #include "statistics/mean_bounds.hpp"
 #include "statistics/whiteness.hpp"
-#include "verdict/consistency_parts.hpp"
 #include "verdict/judgement.hpp"
 
 namespace credence {

@@ -3,7 +3,7 @@
 #include "base/formatted.hpp"
 #include "numeric/chi_square.hpp"
 #include "statistics/goodness.hpp"
-#include "verdict/consistency_parts.hpp"
+#include "verdict/judgement.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
 // Time windows of a run: what cancels over all steps, such as a bias that changes its sign.
 
 #include "statistics/mean_bounds.hpp"
-#include "verdict/consistency_parts.hpp"
 #include "verdict/judgement.hpp"
 
 #include <algorithm>

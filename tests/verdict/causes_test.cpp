@@ -5,7 +5,7 @@
 
 #include "record_support.hpp"
 #include "statistics/moments/trial_moments.hpp"
-#include "verdict/consistency_parts.hpp"
+#include "verdict/judgement.hpp"
 
 namespace credence::test::causes_test {
 

@@ -2,9 +2,6 @@
 
 #include <credence/error.hpp>
 
-#include "files/journal/scan.hpp"
-#include "files/journal/totals.hpp"
-
 #include <algorithm>
 
 namespace credence {

@@ -2,7 +2,7 @@
 // The journal of a run: finished blocks, committed to the disk during the run. docs/durability.md describes its
 // guarantees.
 
-#include "files/journal/places.hpp"
+#include "files/journal/scan.hpp"
 #include "study/releases.hpp"
 
 #include <atomic>

@@ -4,9 +4,6 @@
 
 #include <credence/error.hpp>
 
-#include "files/journal/scan.hpp"
-#include "files/journal/totals.hpp"
-
 #include <algorithm>
 
 namespace credence {

@@ -1,4 +1,4 @@
-#include "files/journal/places.hpp"
+#include "files/journal/scan.hpp"
 
 #include <algorithm>
 

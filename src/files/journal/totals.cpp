@@ -1,4 +1,4 @@
-#include "files/journal/totals.hpp"
+#include "files/journal/commit.hpp"
 
 #include "totals/visit_totals.hpp"
 

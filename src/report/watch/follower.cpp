@@ -3,8 +3,6 @@
 #include <credence/error.hpp>
 #include <credence/detail/store.hpp>
 
-#include "files/journal/totals.hpp"
-
 #include <algorithm>
 
 namespace credence {

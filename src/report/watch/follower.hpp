@@ -1,7 +1,7 @@
 #pragma once
 // Reads a run's journal incrementally, snapshot by snapshot.
 
-#include "files/journal/places.hpp"
+#include "files/journal/scan.hpp"
 
 #include <credence/study.hpp>
 
