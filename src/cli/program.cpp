@@ -1,7 +1,6 @@
 // Runs a command line: selects the subcommand and reports errors.
 
 #include "cli/command.hpp"
-#include "cli/process/exit_guard.hpp"
 #include "cli/process/limits.hpp"
 #include "cli/process/progress.hpp"
 #include "cli/version.hpp"
@@ -18,12 +17,42 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cstdlib>
 #include <exception>
 #include <iostream>
 
 namespace {
 
 using namespace credence;
+
+std::atomic<pid_t> guarded = 0;  ///< a process that this one forks is another, and may exit
+std::string& exit_message = *new std::string;  // outlives the static objects, which exit() destroys
+
+extern "C" void refuse_exit() {
+    if (guarded != getpid()) return;
+    // std::cerr may lead elsewhere, and the exit code says the same where this is lost.
+    [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, exit_message.data(), exit_message.size());
+    _exit(1);
+}
+
+/// While an object exists, exit() in this process, such as that of a user's world, ends it with a message and exit code
+/// 1: the code given to exit() is 0 perhaps, which would say that the command is done. _exit() is not noticed.
+class ExitGuard {
+public:
+    /// `command`: the message begins with it.
+    explicit ExitGuard(const std::string& command) {
+        [[maybe_unused]] static const bool registered =
+            std::atexit(refuse_exit) == 0 && std::at_quick_exit(refuse_exit) == 0;
+        exit_message = command +
+                       ": cannot finish (exit() was called in the middle of it, by a world or by a library). A library "
+                       "may have said why, above; in a world throw an exception instead.\n";
+        guarded = getpid();
+    }
+    ~ExitGuard() { guarded = 0; }
+    ExitGuard(const ExitGuard&) = delete;
+    ExitGuard& operator=(const ExitGuard&) = delete;
+};
 
 /// A subcommand: its description, and the function that runs it.
 struct Subcommand {

@@ -5,7 +5,7 @@
 #include <credence/detail/store.hpp>
 #include <credence/text.hpp>
 
-#include "files/hdf5/slab.hpp"
+#include "files/hdf5/read.hpp"
 #include "record/read.hpp"
 
 #include <algorithm>

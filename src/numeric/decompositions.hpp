@@ -4,6 +4,8 @@
 
 #include <Eigen/Cholesky>
 
+#include <string>
+
 namespace credence {
 
 /// P = L L', L lower triangular, of P [n, n].
@@ -44,5 +46,15 @@ struct Eigenpairs {
 /// Those of a symmetric matrix.
 Eigenpairs eigenpairs(const Eigen::MatrixXd& symmetric);
 Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& symmetric);
+
+// Whether symmetric matrices are positive definite beyond rounding, of values with the relative spacing `epsilon`.
+
+/// Factors S; what is wrong with it, where it is not positive definite. Pivots that are not small need no eigenvalues.
+/// `rounding` becomes the bound on the relative error of nu'S^-1nu [statistics/moments/conditioning.hpp]; 0 for such
+/// pivots.
+std::string factor_checked(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, CholeskyFactor& factor,
+                           double& rounding);
+
+bool is_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix, double epsilon);
 
 }  // namespace credence

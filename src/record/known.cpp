@@ -1,7 +1,7 @@
 #include "record/known.hpp"
 
 #include "record/presence.hpp"
-#include "record/layout/groups.hpp"
+#include "record/layout/parts.hpp"
 #include "record/reader.hpp"
 
 #include <algorithm>

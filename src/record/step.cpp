@@ -1,7 +1,6 @@
 #include "record/step.hpp"
 
 #include <credence/detail/elementary.hpp>
-#include "numeric/positive_definite.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 #pragma once
-// The parts of a run: which blocks it computes and which of them are done, and its commits to its keeper with the totals
-// that stay in memory between them.
+// The parts of a run: which blocks it computes and which of them are done, and its commits to its keeper with the
+// totals that stay in memory between them.
 
 #include <credence/study.hpp>
 

@@ -1,4 +1,6 @@
-#include "files/hdf5/slab.hpp"
+// Reading files of other programs.
+
+#include "files/hdf5/read.hpp"
 
 #include <credence/text.hpp>
 
@@ -60,16 +62,16 @@ void require_bits(const Handle& type, const std::string& place) {
 
 RealDataset::RealDataset(const Handle& group, const std::string& name, bool integers)
     : checked_(group, name),
-      dataset_(H5Dopen2(group.id(), name.c_str(), H5P_DEFAULT), H5Dclose, checked_.place(), "is no readable dataset"),
       chunk_(checked_.extents().size(), 1) {
-    const Handle type(H5Dget_type(dataset_.id()), H5Tclose, place(), "HDF5 cannot read its type");
+    const Handle type(H5Dget_type(checked_.object().id()), H5Tclose, place(), "HDF5 cannot read its type");
     const H5T_class_t kind = H5Tget_class(type.id());
     if (kind != H5T_FLOAT && !integers)
         throw Error(place(), "does not hold floating-point numbers", "Write it as doubles, or as singles");
     if (kind != H5T_FLOAT && kind != H5T_INTEGER) throw Error(place(), "does not hold numbers", "Write it as integers");
     if (kind == H5T_FLOAT) epsilon_ = epsilon_of(type);
     else require_bits(type, place());
-    const Handle creation(H5Dget_create_plist(dataset_.id()), H5Pclose, place(), "HDF5 cannot read its layout");
+    const Handle creation(H5Dget_create_plist(checked_.object().id()), H5Pclose, place(),
+                          "HDF5 cannot read its layout");
     if (H5Pget_layout(creation.id()) != H5D_CHUNKED) return;
     H5Pget_chunk(creation.id(), static_cast<int>(chunk_.size()), chunk_.data());
     require_filters(creation);
@@ -91,13 +93,13 @@ void RealDataset::require_filters(const Handle& creation) const {
 }
 
 void RealDataset::read(const Extents& first, const Extents& count, std::vector<double>& values) const {
-    const Handle space(H5Dget_space(dataset_.id()), H5Sclose, place(), "HDF5 cannot read its extents");
+    const Handle space(H5Dget_space(checked_.object().id()), H5Sclose, place(), "HDF5 cannot read its extents");
     const Handle memory(H5Screate_simple(static_cast<int>(count.size()), count.data(), nullptr), H5Sclose, place(),
                         "HDF5 gives no extents");
     check(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, first.data(), nullptr, count.data(), nullptr), place(),
           "HDF5 cannot select a part of it");
-    check(H5Dread(dataset_.id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT, values.data()), place(),
-          "is damaged: HDF5 cannot read its values");
+    check(H5Dread(checked_.object().id(), H5T_NATIVE_DOUBLE, memory.id(), space.id(), H5P_DEFAULT, values.data()),
+          place(), "is damaged: HDF5 cannot read its values");
 }
 
 std::string read_any_text(const Handle& object, const std::string& name) {

@@ -110,8 +110,8 @@ std::size_t block_list_size(const CommitStart& start, Keep keep);
 /// The start of a commit of these blocks, whose values follow in this order.
 CommitStart commit_of(const std::vector<std::int64_t>& blocks, std::int64_t trials, const BlockLayout& layout);
 
-/// A scenario's totals, the part of a commit that sums up all blocks so far: writes the parts of the results whose size depends on series and steps but not on trials; so the errors of detailed
-/// trials are left out.
+/// A scenario's totals, the part of a commit that sums up all blocks so far: writes the parts of the results whose size
+/// depends on series and steps but not on trials; so the errors of detailed trials are left out.
 void put_totals(ByteWriter& to, const ScenarioResults& results);
 
 /// Reads all of them into results of the same scenario. Throws BadBytes where they are not its totals, are invalid, or

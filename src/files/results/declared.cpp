@@ -6,7 +6,7 @@
 #include "base/nan.hpp"
 #include "base/text_stream.hpp"
 #include "files/results/parts.hpp"
-#include "record/layout/groups.hpp"
+#include "record/layout/parts.hpp"
 #include "scenario/state_series.hpp"
 
 #include <algorithm>

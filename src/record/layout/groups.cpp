@@ -1,4 +1,4 @@
-#include "record/layout/groups.hpp"
+#include "record/layout/parts.hpp"
 
 #include <credence/detail/scenario.hpp>
 #include <credence/error.hpp>

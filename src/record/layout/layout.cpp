@@ -4,7 +4,6 @@
 
 #include <credence/text.hpp>
 
-#include "record/layout/groups.hpp"
 #include "record/layout/parts.hpp"
 
 #include <algorithm>

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "record/layout/groups.hpp"
 #include "record/layout/parts.hpp"
 
 namespace credence {

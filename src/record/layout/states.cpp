@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "record/layout/groups.hpp"
 #include "record/layout/parts.hpp"
 
 namespace credence {

@@ -3,7 +3,7 @@
 #include <credence/detail/draws.hpp>
 #include <credence/detail/lanes_of.hpp>
 #include "engine/octets.hpp"
-#include "numeric/positive_definite.hpp"
+#include "numeric/decompositions.hpp"
 #include "scenario/state_series.hpp"
 #include "worlds/own/lanes/one_by_one.hpp"
 #include "worlds/own/lanes/recorder.hpp"
