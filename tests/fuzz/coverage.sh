@@ -19,7 +19,7 @@ declare -A readers=(
   [arrays]="record worlds/own/step"
   [judge]="record files/record worlds/own/step files/hdf5/slab files/hdf5/read files/hdf5/handle"
   [results]="files/results study/hash numeric/exact_sum files/hdf5/dataset files/hdf5/read files/hdf5/handle"
-  [journal]="files/journal report/watch/follower base/bytes"
+  [journal]="files/journal report/watch/watch base/bytes"
 )
 sources=()
 for name in ${readers[$target]}; do
