@@ -137,8 +137,7 @@ double Parsed::real(const std::string& option, double otherwise, double low, dou
 }
 
 std::string Parsed::choice(const std::string& option) const {
-    const auto described = std::find_if(command->options.begin(), command->options.end(),
-                                        [&](const Option& one) { return one.long_name() == option; });
+    const auto described = std::ranges::find(command->options, option, &Option::long_name);
     const std::vector<std::string>& choices = described->choices;
     const std::optional<std::string> given = text(option);
     if (!given) return choices.front();

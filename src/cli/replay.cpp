@@ -141,8 +141,7 @@ constexpr ShownColumn shown_columns[] = {{"trace_P", "trace(P)", 5},
 
 /// The column of that name; nullptr where the world has none.
 const Column* find_column(const Trajectory& t, const std::string& name) {
-    const auto found =
-        std::find_if(t.columns.begin(), t.columns.end(), [&](const Column& one) { return one.name == name; });
+    const auto found = std::ranges::find(t.columns, name, &Column::name);
     return found == t.columns.end() ? nullptr : &*found;
 }
 

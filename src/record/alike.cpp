@@ -6,8 +6,7 @@
 namespace credence {
 
 std::size_t pose_group(const RecordShape& shape) {
-    const auto found = std::find_if(shape.groups.begin(), shape.groups.end(),
-                                    [](const ComponentGroup& group) { return group.name == "pose"; });
+    const auto found = std::ranges::find(shape.groups, "pose", &ComponentGroup::name);
     return found == shape.groups.end() ? 0 : static_cast<std::size_t>(found - shape.groups.begin());
 }
 

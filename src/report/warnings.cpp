@@ -162,8 +162,7 @@ std::vector<std::string> warnings_of(const Report& report) {
     add_troubles(report, lines);
     for (const std::string& sentence : report.not_judged) lines.push_back("note: " + sentence);
     if (!report.complete) {
-        const auto not_run =
-            std::count_if(report.arms.begin(), report.arms.end(), [](const ArmReport& arm) { return arm.not_run(); });
+        const auto not_run = std::ranges::count_if(report.arms, &ArmReport::not_run);
         lines.push_back("note: the study is not complete: it was asked for " + std::to_string(report.trials) +
                         " trials of each arm" +
                         (not_run == 0 ? "."

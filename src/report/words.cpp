@@ -121,8 +121,7 @@ std::string findable_text(const ArmReport& arm) {
 std::vector<std::string> suspicion_texts(const ArmReport& arm) {
     constexpr std::size_t most = 3;
     std::vector<Suspicion> suspicions = arm.consistency.suspicions;
-    std::sort(suspicions.begin(), suspicions.end(),
-              [](const Suspicion& a, const Suspicion& b) { return a.trials.value < b.trials.value; });
+    std::ranges::sort(suspicions, {}, [](const Suspicion& one) { return one.trials.value; });
     std::vector<std::string> texts;
     for (std::size_t i = 0; i < std::min(most, suspicions.size()); ++i)
         texts.push_back(suspicion_text(arm, suspicions[i]));
@@ -256,9 +255,8 @@ std::vector<const GroupEvidence*> shown_groups(const Evidence& evidence) {
     std::vector<const GroupEvidence*> groups;
     for (const GroupEvidence& group : evidence.groups) groups.push_back(&group);
     if (groups.size() <= most) return groups;
-    std::stable_sort(groups.begin() + 1, groups.end(), [](const GroupEvidence* a, const GroupEvidence* b) {
-        return std::abs(std::log(a->run.mean)) > std::abs(std::log(b->run.mean));
-    });
+    const auto distance = [](const GroupEvidence* group) { return std::abs(std::log(group->run.mean)); };
+    std::ranges::stable_sort(groups.begin() + 1, groups.end(), std::greater(), distance);
     groups.resize(most);
     return groups;
 }

@@ -23,8 +23,7 @@ std::vector<Column> status_columns() {
 }
 
 std::size_t status_column(const std::vector<Column>& columns) {
-    const auto found = std::find_if(columns.begin(), columns.end(),
-                                    [](const Column& column) { return column.type == ColumnType::status; });
+    const auto found = std::ranges::find(columns, ColumnType::status, &Column::type);
     return static_cast<std::size_t>(found - columns.begin());
 }
 

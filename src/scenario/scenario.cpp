@@ -7,8 +7,7 @@
 namespace credence {
 
 const Setting* find_setting(const std::vector<Setting>& settings, const std::string& key) {
-    const auto found =
-        std::find_if(settings.begin(), settings.end(), [&](const Setting& setting) { return setting.key == key; });
+    const auto found = std::ranges::find(settings, key, &Setting::key);
     return found == settings.end() ? nullptr : &*found;
 }
 

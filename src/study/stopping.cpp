@@ -123,8 +123,7 @@ std::optional<std::int64_t> predicted_trials(const InterimAnalysis& analysis, co
 }
 
 const GoalState& widest(const InterimAnalysis& analysis) {
-    return *std::max_element(analysis.states.begin(), analysis.states.end(),
-                             [](const GoalState& a, const GoalState& b) { return excess(a) < excess(b); });
+    return *std::ranges::max_element(analysis.states, {}, excess);
 }
 
 InterimAnalysis run_analyses(const StoppingRule& rule,

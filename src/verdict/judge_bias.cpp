@@ -13,8 +13,7 @@ namespace {
 /// The steps whose mean error is farthest from 0, for the text alone.
 std::string worst_step(const BiasEvidence& bias) {
     const auto size = [](const Moments& step) { return std::isnan(step.mean) ? 0 : std::abs(step.mean); };
-    const auto worst = std::max_element(bias.step.begin(), bias.step.end(),
-                                        [&](const Moments& a, const Moments& b) { return size(a) < size(b); });
+    const auto worst = std::ranges::max_element(bias.step, {}, size);
     return "over all steps, most at step " + std::to_string(worst - bias.step.begin() + 1);
 }
 

@@ -92,8 +92,7 @@ std::vector<DescribedKey> every_key() {
     std::vector<DescribedKey> keys{described_world()};
     for (const World* world : all_worlds())
         for (DescribedKey& key : world->keys())
-            if (std::none_of(keys.begin(), keys.end(), [&](const DescribedKey& known) { return known.key == key.key; }))
-                keys.push_back(std::move(key));
+            if (std::ranges::count(keys, key.key, &DescribedKey::key) == 0) keys.push_back(std::move(key));
     return keys;
 }
 

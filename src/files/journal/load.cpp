@@ -80,9 +80,8 @@ void Journal::load(Study& study) {
         refuse_damaged(file_.path(), bad.what());
     }
     study.trials = std::max(study.trials, asked_);
-    study.complete = std::all_of(study.scenarios.begin(), study.scenarios.end(), [&](const ScenarioResults& results) {
-        return results.trials == study.trials;
-    });
+    study.complete = std::ranges::all_of(
+        study.scenarios, [&](const ScenarioResults& results) { return results.trials == study.trials; });
     study.computed_by = computed_by_;
     finished(study);
 }

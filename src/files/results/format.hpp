@@ -106,9 +106,8 @@ inline void write_status_flags(const hdf5::Handle& variable) {
 /// The attribute `units` of a state, whose components differ in units if one is a heading.
 inline std::string state_units(const std::vector<Component>& components) {
     const std::string& first = components.front().unit;
-    const bool one = std::all_of(components.begin(), components.end(),
-                                 [&](const Component& component) { return component.unit == first; });
-    return one ? first : "see component_units";
+    return std::ranges::count(components, first, &Component::unit) == std::ssize(components) ? first
+                                                                                             : "see component_units";
 }
 
 /// A dimension along the components of the state, with their names and units.

@@ -14,16 +14,12 @@ namespace credence {
 
 namespace {
 
-bool one_of(const std::string& word, const std::vector<std::string>& words) {
-    return std::find(words.begin(), words.end(), word) != words.end();
-}
-
 /// The names of all arms of a file, each once.
 std::vector<std::string> arm_names(const StudyFile& file) {
     std::vector<std::string> names;
     for (const ScenarioResults& results : file.study.scenarios)
         for (const ArmResults& arm : results.arms)
-            if (!one_of(arm.name, names)) names.push_back(arm.name);
+            if (std::ranges::count(names, arm.name) == 0) names.push_back(arm.name);
     return names;
 }
 
@@ -150,7 +146,7 @@ private:
         for (const ArmChoice& side : {choice.a, choice.b}) {
             std::vector<std::string> names = arm_names(files_[side.file]);
             for (std::size_t i = names.size(); i-- > 0;) names.push_back(controller_of(names[i]));
-            if (one_of(side.arm, names)) continue;
+            if (std::ranges::count(names, side.arm) > 0) continue;
             why = "no scenario of " + files_[side.file].path + " has " + side.arm;
             nearest = did_you_mean(side.arm, names);
             break;
@@ -221,8 +217,7 @@ void check_same_units(const ChosenPair& pair) {
 }
 
 bool of_different_worlds(const ComparedPair& pair) {
-    return std::any_of(pair.differences.begin(), pair.differences.end(),
-                       [](const KeyDifference& difference) { return is_of_the_sensor(difference.key); });
+    return std::ranges::any_of(pair.differences, is_of_the_sensor, &KeyDifference::key);
 }
 
 std::vector<KeyDifference> shown_differences(const Scenario& a, const Scenario& b) {

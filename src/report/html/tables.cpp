@@ -47,10 +47,9 @@ void add_rows(const Part& part, Table& table, const Cells& cells) {
 
 bool has_published(const Part& part) {
     const auto any = [](const ArmReport* arm) {
-        return std::any_of(arm->columns.begin(), arm->columns.end(),
-                           [](auto& one) { return one.published.has_value(); });
+        return std::ranges::any_of(arm->columns, [](auto& one) { return one.published.has_value(); });
     };
-    return std::any_of(part.arms.begin(), part.arms.end(), any);
+    return std::ranges::any_of(part.arms, any);
 }
 
 Html arms_table(const Part& part) {

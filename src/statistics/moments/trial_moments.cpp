@@ -20,8 +20,8 @@ std::vector<int> places_of(const std::vector<int>& components) {
 }
 
 bool is_whole(const TrialMoments& moments, std::size_t i, const std::vector<int>& places) {
-    return std::none_of(places.begin(), places.end(),
-                        [&](int place) { return std::isnan(moments.S(i)[place]) || std::isnan(moments.C(i)[place]); });
+    return std::ranges::none_of(
+        places, [&](int place) { return std::isnan(moments.S(i)[place]) || std::isnan(moments.C(i)[place]); });
 }
 
 /// The part that a trial is in, chosen by its own squared errors, to single precision: whatever the order of the trials

@@ -105,8 +105,7 @@ std::string shares_text(const std::vector<Loading>& loadings) {
 
 Html direction_charts(const Part& part) {
     constexpr std::size_t most = 6;
-    if (std::none_of(part.arms.begin(), part.arms.end(), [](const ArmReport* arm) { return has_directions(*arm); }))
-        return {};
+    if (std::ranges::none_of(part.arms, [](const ArmReport* arm) { return has_directions(*arm); })) return {};
     Html html = spectrum_chart(part);
     for (std::size_t i = 0; i < std::min(most, part.arms.size()); ++i) html += ellipse_chart(part, i);
     return html;
