@@ -19,6 +19,10 @@ struct Tracker {
 
     static constexpr const char* name = "tracker";
 
+    /// Of the draws, by their numbers in `run`.
+    static constexpr const char* sources[] = {"initial_position", "initial_velocity", "acceleration", "measurement",
+                                              "detection"};
+
     static void keys(credence::OwnKeys<Settings>& keys) {
         keys.real("target.period", &Settings::period, 1e-3, 1e3, "T, time between steps (s)");
         keys.real("target.acceleration", &Settings::acceleration, 1e-6, 1e3, "sigma of the acceleration (m/s^2)");

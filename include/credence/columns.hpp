@@ -36,6 +36,7 @@ enum class ColumnType { real, integer, status };
 struct ColumnPlaces {
     bool watch = true;                     ///< `credence watch`
     bool sweep = true, sweep_pairs = true; ///< the tables by point of a sweep: of an arm, of a pair
+    bool anywhere = true;                  ///< false of what a budget alone reads: nothing is said of it
 };
 
 /// One number per trial.
@@ -123,6 +124,28 @@ std::size_t status_column(const std::vector<Column>& columns);
 
 /// The names and units of the last two columns of every world.
 std::vector<Column> status_columns();
+
+/// Steps of which the signed errors are columns: none, the last, or up to most_kept_steps from the first to the last.
+enum class KeptErrors { none, last, mean };
+const std::vector<std::string>& kept_errors_names();
+inline constexpr int most_kept_steps = 10;
+
+/// How a scenario takes part in a budget [docs/budget.md].
+struct BudgetSettings {
+    std::uint32_t other = 0;  ///< the sources of an independent world [draws.hpp, source_bit]
+    KeptErrors errors = KeptErrors::none;
+
+    /// Variances are kept of the trials whose draws are the study's own.
+    bool keeps_variances() const { return errors != KeptErrors::none && other == 0; }
+};
+
+/// The steps from 0 on whose errors are kept, of `steps`.
+std::vector<int> kept_steps(KeptErrors kept, int steps);
+
+/// Columns, with those of the kept errors before the last two: `error_x` of the last step or `error_x_K` of step K of
+/// component x, all components of a step together; then `variance_x` likewise.
+std::vector<Column> with_errors(std::vector<Column> columns, const std::vector<Component>& components, int steps,
+                                const BudgetSettings& budget);
 
 /// Replaces the columns of a failed trial by their fill values, status and its pose excepted; leaves others as they
 /// are. `values` [columns]. Returns whether the trial failed.

@@ -29,6 +29,8 @@
 //       sets one of the type integer to anything else than a whole number of 32 bits has failed
 //   static void W::validate(const Settings&)                      throws InputError where settings contradict each
 //   other
+//   static constexpr const char* W::sources[]                     the names of the sources 0, 1 ... (up to 15) that its
+//   trials draw from, for `credence budget`
 //
 // run is called from several threads at once and must not keep anything from call to call, read clocks or files, or
 // draw from anywhere else: a block of trials is a pure function of scenario, root seed and index. Trial 0 runs twice
@@ -44,6 +46,7 @@
 #include <credence/own_trial.hpp>
 
 #include <concepts>
+#include <iterator>
 #include <utility>
 
 namespace credence {
@@ -92,7 +95,10 @@ class OwnWorld {
 public:
     using Settings = OwnSettings<typename W::Settings>;
 
-    OwnWorld() { W::keys(keys_); }
+    OwnWorld() {
+        if (!sources().empty()) keys_.budget(sources());
+        W::keys(keys_);
+    }
 
     std::string name() const { return W::name; }
     const std::vector<KeyOf<Settings>>& keys() const { return keys_.list(); }
@@ -110,6 +116,12 @@ public:
         Settings read_back;  // a default that its own key refuses would make files that no one can read
         for (const KeyOf<Settings>& key : keys_.list()) key.set(read_back, key.get(settings));
     }
+    std::vector<DrawSource> sources(const Settings& = {}) const {
+        if constexpr (requires { W::sources; })
+            return own_sources({std::begin(W::sources), std::end(W::sources)});
+        else
+            return {};
+    }
     std::vector<Column> columns(const Settings& settings, const Scenario& scenario) const {
         return own_columns(scenario, report_of(settings.own));
     }
@@ -117,7 +129,8 @@ public:
         return own_series(scenario, report_of(settings.own));
     }
     std::unique_ptr<const Simulation> simulation(const Settings& settings, const Scenario& scenario) const {
-        const OwnReport report = report_of(settings.own);
+        OwnReport report = report_of(settings.own);
+        report.budget = settings.budget;
         if constexpr (RunsInLanes<W>) {
 #ifndef CREDENCE_TARGET_OBJECT
             if (auto in_lanes = lane_simulation(scenario, report, linked_lanes<W>(),

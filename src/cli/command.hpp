@@ -121,12 +121,14 @@ int give_report(const Parsed& parsed, Reported (*make)(const Parsed&));
 /// What is said of files, computed once: its text in a format of the command.
 using Rendering = std::function<std::string(const std::string& format)>;
 Rendering compared(const Parsed& parsed);
+Rendering budgeted(const Parsed& parsed);
 
 // The subcommands: their descriptions, and the functions that run them and return the exit code.
 const Command& run_command();
 const Command& report_command();
 const Command& judge_command();
 const Command& compare_command();
+const Command& budget_command();
 const Command& replay_command();
 const Command& show_command();
 const Command& merge_command();
@@ -136,6 +138,7 @@ int run(const Parsed& parsed, const std::string& command_line);
 int report(const Parsed& parsed);
 int judge(const Parsed& parsed);
 int compare(const Parsed& parsed);
+int budget(const Parsed& parsed);
 int replay(const Parsed& parsed, const std::string& command_line);
 int show(const Parsed& parsed);
 int merge(const Parsed& parsed, const std::string& command_line);

@@ -70,6 +70,7 @@ const std::vector<Subcommand>& subcommands() {
                                              {cli::report_command, without_line<cli::report>},
                                              {cli::judge_command, without_line<cli::judge>},
                                              {cli::compare_command, without_line<cli::compare>},
+                                             {cli::budget_command, without_line<cli::budget>},
                                              {cli::replay_command, cli::replay},
                                              {cli::merge_command, cli::merge},
                                              {cli::watch_command, without_line<cli::watch>},

@@ -117,6 +117,7 @@ std::vector<Trajectory> replay_stored(const Parsed& parsed) {
     Trajectory trajectory = replay_trial(results.scenario, a, study.root_seed, trial);
     for (std::size_t c = 0; c < results.columns.size() && results.keep == Keep::trials; ++c) {
         const auto column = std::ranges::find(trajectory.columns, results.columns[c].name, &Column::name);
+        if (column == trajectory.columns.end()) continue;  // an error that a budget keeps
         const double stored = results.arms[a].columns.values(c, row, 1).front(),
                      replayed = trajectory.column_values[static_cast<std::size_t>(column - trajectory.columns.begin())];
         if (!same(stored, replayed))

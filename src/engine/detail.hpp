@@ -64,18 +64,21 @@ public:
                    const Command<Real>&, const Belief<Real, Layout::capacity>& belief,
                    const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
                    const Linearisation& linearised) {
-        if (!details_->on) return;
         truth_ = &truth;
+        if (!details_->on) return;
         whiten(k - 1, layout, belief, sightings, edge_measurement, linearised);
         details_->products.correlate(k - 1);
     }
 
     void updated(int k, const Layout& layout, const Belief<Real, Layout::capacity>& belief, const Real*) {
-        if (!details_->on) return;
+        if (!details_->keeps_errors) return;
         Real error[Layout::capacity];
         estimation_error(belief, *truth_, layout, error);
         const int n = layout.size();
         for (int i = 0; i < n; ++i) details_->errors[i * (problem_->poses - 1) + k - 1] = error[i];
+        for (int i = 0; details_->variances != nullptr && i < n; ++i)
+            details_->variances[i * (problem_->poses - 1) + k - 1] =
+                Real(problem_->filter.covariance_factor) * belief.covariance.entry[i][i];
         if (details_->moments != nullptr) add_step_moments(n, belief.covariance, error);
     }
 

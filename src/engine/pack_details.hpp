@@ -91,26 +91,42 @@ void copy_out(const Real* from, int cells, int trial, const Batch& batch, double
 template <class Real>
 class PackDetails {
 public:
-    bool on = false;          ///< false: the batch asks for none, and nothing of the rest is touched
+    bool on = false;          ///< false: the batch asks for none, and of the rest only what a budget keeps is touched
+    bool keeps_errors = false;
     Real* errors = nullptr;   ///< [n, K - 1] x^ - x after the updates
+    Real* variances = nullptr;  ///< [n, K - 1] P_jj after the updates, for a budget; else null
     Real* moments = nullptr;  ///< [moment_count], those of the groups' NEES left out; null where there are none
     LaneProducts<Real> products;
 
     /// Reals that it needs beside itself, with whitened innovations of `rows` rows.
     static std::size_t room(const CommonView& problem, int rows) {
-        return error_cells(problem) + moment_cells(problem) + LaneProducts<Real>::room(rows);
+        return error_cells(problem) * (problem.keeps_variances ? 2 : 1) + moment_cells(problem) +
+               LaneProducts<Real>::room(rows);
     }
 
     PackDetails(const CommonView& problem, int rows, const Batch& batch, Real* room)
-        : on(batch.errors != nullptr), errors(room), problem_(problem), rows_(rows),
-          history_(room + error_cells(problem) + moment_cells(problem)) {
+        : on(batch.errors != nullptr), keeps_errors(on || problem.kept_count > 0), errors(room), problem_(problem),
+          rows_(rows), history_(room + error_cells(problem) + moment_cells(problem)) {
         if (on && moment_cells(problem) > 0) moments = errors + error_cells(problem);
+        if (problem.keeps_variances) variances = history_ + LaneProducts<Real>::room(rows);
     }
 
     /// Before each pack.
     void start() {
         if (on) products.start(rows_, history_);
         for (std::size_t i = 0; moments != nullptr && i < moment_cells(problem_); ++i) moments[i] = Real(0);
+    }
+    /// Writes the columns of a budget [columns.hpp, with_errors] before the last two of the `own` ones of a trial.
+    void write_columns(int own, Real* columns) const {
+        if (problem_.kept_count == 0) return;
+        Real* to = columns + own - 2;
+        const Real status = to[0], pose = to[1];
+        for (const Real* from : {errors, variances})
+            for (int i = 0; from != nullptr && i < problem_.kept_count; ++i)
+                for (int j = 0; j < problem_.state_size; ++j)
+                    *to++ = from[j * (problem_.poses - 1) + problem_.kept_steps[i]];
+        to[0] = status;
+        to[1] = pose;
     }
     /// Stores what there is of the trials from `trial` on: of moments, NEES and standardised errors as means over the
     /// steps.

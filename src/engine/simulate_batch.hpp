@@ -159,23 +159,27 @@ struct BatchOf {
 
     static std::size_t workspace_size(const View& problem) {
         const Unfolded<Real> unfolded(nullptr, problem);
-        return Trial::room(problem) + (static_cast<std::size_t>(Trial::column_count(problem)) +
+        const int columns = Trial::column_count(problem) + problem.error_columns();
+        return Trial::room(problem) + (static_cast<std::size_t>(columns) +
                                        PackDetails<Real>::room(problem, Trial::whitened_rows(problem)) +
                                        static_cast<std::size_t>(unfolded.cells * unfolded.capacity)) * sizeof(Real);
     }
 
     static void simulate(const View& problem, const Trial& trial, const Batch& batch) {
-        const int rows = Trial::whitened_rows(problem), count = Trial::column_count(problem);
+        const int rows = Trial::whitened_rows(problem), own = Trial::column_count(problem),
+                  count = own + problem.error_columns();
         Real* columns = reinterpret_cast<Real*>(static_cast<std::byte*>(batch.workspace) + Trial::room(problem));
         Real* room = columns + count;
         PackDetails<Real> details(problem, rows, batch, room);
         Unfolded<Real> unfolded(room + PackDetails<Real>::room(problem, rows), problem);
         for (int i = 0; i < batch.trials; i += lanes<Real>) {
             const PackPlace<Real> place{batch.first_trial + i, first_lanes<Real>(batch.trials - i)};
-            const KeyedDraws<Real> draws(batch.root_seed, trials_from<Real>(place.first), Trial::truncate(problem));
+            const KeyedDraws<Real> draws(batch.root_seed, trials_from<Real>(place.first), Trial::truncate(problem),
+                                         problem.other);
             Real* all_series = unfolded.next();
             details.start();
             trial.run(problem, draws, place, batch.workspace, details, columns, all_series);
+            details.write_columns(own, columns);
             const Mask<Real> counts = both(columns[count - 2] == Real(0), place.there);
             double* to = batch.columns + i / octet * count * octet + i % octet;
             for (int c = 0; c < count; ++c) store(columns[c], to + c * octet);

@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <credence/detail/worlds.hpp>
 #include <credence/error.hpp>
 #include <credence/report.hpp>
 #include <credence/text.hpp>
 #include <map>
 #include <tuple>
 
+#include "base/wording.hpp"
 #include "base/nan.hpp"
 #include "report/words.hpp"
 #include "statistics/bootstrap.hpp"
@@ -77,6 +79,19 @@ void leave_out_nees(std::vector<ColumnReport>& columns) {
     }
 }
 
+/// A hint of the first refuted arm: the verdict says that P is wrong, and a budget because of what.
+void hint_at_budget(Report& report) {
+    const auto refuted = std::ranges::find_if(report.arms, [](const ArmReport& arm) {
+        return arm.consistency.looks_wrong() && !arm.consistency.findings.empty();
+    });
+    if (refuted == report.arms.end()) return;
+    const Scenario& scenario = *std::ranges::find(report.scenarios, refuted->scenario, &Scenario::name);
+    const World* world = find_world(scenario.world);
+    if (world == nullptr || scenario.settings.empty() || world->sources(scenario).size() < 2) return;
+    refuted->consistency.hints.push_back(as_command({"budget", "SCENARIO.ini"}) +
+                                         " tells which source of noise its error is of, and what P counts for it");
+}
+
 }  // namespace
 
 ArmReport report_arm(const ScenarioResults& results, const ArmResults& arm, Evidence evidence, std::uint64_t root_seed,
@@ -114,6 +129,7 @@ Report make_report(const Study& study, const Limits& limits) {
             show_finite_trials(report.arms.back().evidence, limits);
         }
     }
+    hint_at_budget(report);
     return report;
 }
 

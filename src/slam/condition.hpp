@@ -98,6 +98,15 @@ struct Update {
     Real unsettled{};                ///< 1 where an iterated update has not converged, else 0
     Mask<Real> positive_definite{};  ///< every S was
     Elimination<Real, capacity> alone;  ///< workspace for nis_edges
+
+    // A class derived from this one hears by these what the update does to P [estimators/attributed.hpp].
+    void begun() {}                                ///< it begins, from the predicted P
+    template <class... What>
+    void gained(const What&...) {}                 ///< (S, i, K): the gain of component i for the decorrelated rows
+    template <class... What>
+    void taken(const What&...) {}                  ///< (layout, rows, N): P was conditioned with these gains
+    template <class... What>
+    void turned(const What&...) {}                 ///< (layout, shift): turn_covariance
 };
 
 /// Conditions P on two rows of noise variance N: P <- P - W S^-1 W'. Masked lanes stay unchanged. `gained(S, i, gain)`
@@ -175,9 +184,9 @@ void condition(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& r
 
 /// Conditions P on two rows whose innovation about the predicted mean is nu: adds K (nu - H correction) to the running
 /// correction and nu' S^-1 nu of these rows to the NIS.
-template <class Layout, class Rows, class Real, int capacity>
+template <class Layout, class Rows, class Real, int capacity, class Updating>
 void take_in(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& rows, Real N, Mask<Real> used,
-             const Vector2<Real>& nu, Update<Real, capacity>& update) {
+             const Vector2<Real>& nu, Updating& update) {
     const Vector2<Real> fresh = nu - rows([&](auto s) { return update.correction[s]; });
     const auto correct = [&](const auto& S, auto i, const auto& K) {
         if constexpr (Layout::by_axis) {
@@ -186,11 +195,13 @@ void take_in(Symmetric<Real, capacity>& P, const Layout& layout, const Rows& row
         } else {
             const Vector2<Real> nu_S = S(fresh);
             update.correction[i] = fma(K.y, nu_S.y, fma(K.x, nu_S.x, update.correction[i]));
+            update.gained(S, i, K);
         }
     };
     const Decorrelation<Real> S = condition(P, layout, rows, N, used, correct);
     update.nis = update.nis + S.squared(Layout::by_axis ? fresh : S(fresh));
     update.positive_definite = both(update.positive_definite, S.positive_definite);
+    update.taken(layout, rows, N);
 }
 
 template <class Real>

@@ -84,9 +84,9 @@ Real nis_of_edges(const Symmetric<Real, capacity>& P, const FilterParameters& fi
 }
 
 /// Updates with the edges, as contrasts, and adds their contribution to the NIS.
-template <class Layout, class Real, int capacity>
+template <class Layout, class Real, int capacity, class Updating>
 void take_in_edges(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
-                   const ContrastInnovations<Layout, Real>& innovations, Update<Real, capacity>& update) {
+                   const ContrastInnovations<Layout, Real>& innovations, Updating& update) {
     each(zero, layout.features() - one, [&](auto c) {
         const Contrast& contrast = filter.contrasts[c];
         if (contrast.scale == 0) return;

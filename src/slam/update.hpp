@@ -27,11 +27,13 @@ void gate_sightings(const Belief<Real, capacity>& belief, const FilterParameters
 /// Conditions a predicted belief on the sightings and on every edge: P <- P - K S K', the correction K nu in `update`;
 /// the mean is not changed. `sightings` [M]; `edge_measurement(e)` gives the difference measured on edge e, world
 /// frame; `linearised(j, sighting)` its rows and innovation.
-template <class Layout, class Real, int capacity, class EdgeMeasurement, class Linearisation>
+template <class Layout, class Real, int capacity, class EdgeMeasurement, class Linearisation,
+          class Updating>
 void condition_belief(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
                       const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
-                      const Linearisation& linearised, Update<Real, capacity>& update) {
+                      const Linearisation& linearised, Updating& update) {
     const auto n = layout.size();
+    update.begun();
     update.nis = update.nis_edges = update.unsettled = Real(0);
     Real rows = Real(2 * filter.edge_count), unseen = Real(0);
     each(zero, layout.features(), [&](auto j) {
@@ -62,10 +64,11 @@ void condition_belief(Belief<Real, capacity>& belief, const FilterParameters& fi
 }
 
 /// Updates a predicted belief: x <- x + K nu, P <- P - K S K'.
-template <class Layout, class Real, int capacity, class EdgeMeasurement, class Linearisation>
+template <class Layout, class Real, int capacity, class EdgeMeasurement, class Linearisation,
+          class Updating>
 CREDENCE_FLAT void update_belief(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
                                  const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
-                                 const Linearisation& linearised, Update<Real, capacity>& update) {
+                                 const Linearisation& linearised, Updating& update) {
     condition_belief(belief, filter, layout, sightings, edge_measurement, linearised, update);
     each(zero, layout.size(), [&](auto i) { belief.mean[i] = belief.mean[i] + update.correction[i]; });
 }

@@ -63,7 +63,9 @@ std::int64_t TrialTotals::counted() const { return finite() - (diverged_count ? 
 std::int64_t TrialTotals::diverged() const { return statuses[static_cast<std::size_t>(Status::diverged)]; }
 std::int64_t TrialTotals::finite() const { return statuses[static_cast<std::size_t>(Status::completed)] + diverged(); }
 
-bool is_reported(const Column& column) { return column.type != ColumnType::status && column.name != "status_pose"; }
+bool is_reported(const Column& column) {
+    return column.type != ColumnType::status && column.name != "status_pose" && column.places.anywhere;
+}
 
 const char* problem_of(const TrialTotals& all) {
     const std::int64_t with_columns = all.finite();

@@ -3,6 +3,8 @@
 #include "base/choice.hpp"
 #include "base/wording.hpp"
 
+#include <credence/detail/draws.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -107,6 +109,48 @@ std::size_t parse_choice(const std::string& name, const std::string& value, cons
     if (found == choices.end())
         throw invalid_value(name, value, "not one of its choices", "Give one of " + joined(choices));
     return static_cast<std::size_t>(found - choices.begin());
+}
+
+const std::vector<DrawSource>& slam_sources() {
+    const auto at_first = [](Source source) { return source_bit(source, 0); };
+    const auto later = [](Source source) { return source_bit(source, 1); };
+    const auto always = [=](Source source) { return at_first(source) | later(source); };
+    static const std::vector<DrawSource> sources{
+        {"start",
+         at_first(Source::odometry_heading) | at_first(Source::odometry_position) | at_first(Source::landmark_prior)},
+        {"odometry", later(Source::odometry_position)},
+        {"heading", later(Source::odometry_heading)},
+        {"measurement", always(Source::measurement)},
+        {"walk", always(Source::walk)},
+        {"deformation", always(Source::deformation)},
+        {"edges", always(Source::edge)},
+        {"detection", always(Source::detection)},
+        {"outliers", always(Source::outlier)},
+        {"placement", always(Source::placement)},
+        {"bias", always(Source::odometry_bias)},
+        {"control", always(Source::control)}};
+    return sources;
+}
+
+std::uint32_t parse_sources(const std::string& value, const std::vector<DrawSource>& sources) {
+    std::uint32_t bits = 0;
+    if (value == "none") return bits;
+    std::vector<std::string> names;
+    for (const DrawSource& source : sources) names.push_back(source.name);
+    for (const std::string& part : list_parts("draws.other", value))
+        bits |= sources[parse_choice("draws.other", part, names)].bits;
+    return bits;
+}
+
+std::string sources_text(std::uint32_t bits, const std::vector<DrawSource>& sources) {
+    std::vector<std::string> names;
+    for (const DrawSource& source : sources)
+        if ((bits & source.bits) == source.bits) names.push_back(source.name);
+    return names.empty() ? "none" : joined(names);
+}
+
+KeptErrors parse_kept_errors(const std::string& value) {
+    return static_cast<KeptErrors>(parse_choice("draws.errors", value, kept_errors_names()));
 }
 
 std::vector<Point> parse_points(const std::string& name, const std::string& value, std::size_t most) {

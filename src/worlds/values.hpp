@@ -55,6 +55,9 @@ std::string is_name(const std::string& value);
 std::string is_title(const std::string& value);
 std::string is_unit(const std::string& value);
 
+/// The sources that the worlds of SLAM draw from.
+const std::vector<DrawSource>& slam_sources();
+
 template <class Enum>
 std::string names_text(const std::vector<Enum>& values, const std::vector<std::string>& names) {
     std::vector<std::string> parts;

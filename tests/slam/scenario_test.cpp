@@ -103,6 +103,8 @@ const std::vector<KeyCase>& key_cases() {
          {"fixed.ekf", "fixed.ekf x", "fixed.ekf 1 2"}},
         {"published.unseen", "", {"fixed.ekf 3"}, {"fixed.ekf", "fixed.ekf inf"}},
         {"published.pose_error", "", {"fixed.ekf 0.1629"}, {"fixed.ekf"}},
+        {"draws.other", "none", {"heading", "start, walk, control"}, {"heding", "heading walk", "Walk"}},
+        {"draws.errors", "none", {"last", "mean"}, {"first", "last, mean"}},
     };
     return cases;
 }

@@ -142,6 +142,7 @@ struct DeformableSettings {
     std::string title;
     std::string length_unit = "dm";
     int poses = 20;                               ///< K, the first included
+    BudgetSettings budget;
     Process process = Process::heading;
     FeatureSettings features;
     SensorSettings sensor;

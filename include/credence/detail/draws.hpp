@@ -37,6 +37,11 @@ struct DrawKey {
 /// The number of sources that a key can distinguish.
 constexpr int source_count = 16;
 
+/// The bit of a source's draws among those of a set of sources: they are apart at pose 0, at which trials start.
+constexpr std::uint32_t source_bit(Source source, int pose) {
+    return std::uint32_t{1} << (static_cast<int>(source) + (pose == 0 ? source_count : 0));
+}
+
 /// The largest index of draws that are never truncated.
 constexpr int largest_wide_index = (1 << 27) - 1;
 
@@ -103,12 +108,14 @@ Vector2<Real> box_muller(const PhiloxBlock<Bits<Real>>& random) {
 template <class Real>
 class KeyedDraws {
 public:
-    /// `truncate`: multiple of sigma beyond which a scalar draw is redrawn; infinity for never.
-    KeyedDraws(std::uint64_t root_seed, Bits<Real> trial, double truncate)
+    /// `truncate`: multiple of sigma beyond which a scalar draw is redrawn; infinity for never. `other`: the sources
+    /// [source_bit] whose draws are those of an independent world.
+    KeyedDraws(std::uint64_t root_seed, Bits<Real> trial, double truncate, std::uint32_t other = 0)
         : keys_(static_cast<std::uint32_t>(root_seed), static_cast<std::uint32_t>(root_seed >> 32)),
           trial_(trial),
           truncates_(truncate < largest_draw),
-          truncate_(truncate) {}
+          truncate_(truncate),
+          other_(other) {}
 
     Vector2<Real> normal(Source source, int pose, int index) const {
         const DrawKey key{source, pose, index};
@@ -148,14 +155,15 @@ private:
         }
     }
 
-    /// Counter: trial (64 bits), pose (32), then attempt (12), source (4) and index (16).
+    /// Counter: trial (64 bits), whether of the other world (1), pose (31), then attempt (12), source (4), index (16).
     PhiloxBlock<Bits<Real>> counter_of(const DrawKey& key, std::uint32_t attempt) const {
         const std::uint64_t what = std::uint64_t{attempt} << 20 |
                                    std::uint64_t{static_cast<std::uint32_t>(key.source)} << 16 |
                                    static_cast<std::uint64_t>(key.index);
+        const std::uint64_t world = (other_ & source_bit(key.source, key.pose)) != 0;
         const Bits<Real> none{};
-        return {{trial_ & std::uint64_t{0xffffffff}, trial_ >> 32, none + static_cast<std::uint64_t>(key.pose),
-                 none + what}};
+        return {{trial_ & std::uint64_t{0xffffffff}, trial_ >> 32,
+                 none + (world << 31 | static_cast<std::uint64_t>(key.pose)), none + what}};
     }
 
     /// The words of several draws, as many at a time as fit into registers: 32 for Reals of 64 bytes, otherwise 16.
@@ -185,6 +193,7 @@ private:
     Bits<Real> trial_;
     bool truncates_;
     Real truncate_;
+    std::uint32_t other_;
 };
 
 /// A number of draws, from any source of noise. `keys` [count], `draws` [count].

@@ -23,6 +23,7 @@ struct KeyOf {
     /// The key came after studies whose files stay usable: a study's hash leaves it out where it has its default.
     bool later = false;
     std::string sigma_unit{};  ///< the unit of a standard deviation, such as rad; empty for anything else
+    bool hidden = false;  ///< a scenario has the key only where it does not have its default
 };
 
 /// Throws InputError for a key that is not among `known`, with the closest one that is.
@@ -50,6 +51,28 @@ void set_key(const std::vector<KeyOf<Settings>>& keys, Settings& settings, const
         }
     }
     refuse_unknown_key(name, names);
+}
+
+// The keys of a budget [docs/budget.md].
+
+/// The bits of sources as `heading, walk`, or `none`. Throws InputError for an unknown one.
+std::uint32_t parse_sources(const std::string& value, const std::vector<DrawSource>& sources);
+std::string sources_text(std::uint32_t bits, const std::vector<DrawSource>& sources);
+KeptErrors parse_kept_errors(const std::string& value);
+
+/// `sources`: all that the world may draw from.
+template <class Settings>
+void add_budget_keys(std::vector<KeyOf<Settings>>& keys, const std::vector<DrawSource>& sources) {
+    std::vector<std::string> names;
+    for (const DrawSource& source : sources) names.push_back(source.name);
+    keys.push_back({"draws.other", "none, or the sources that draw as in an independent world: any of " + joined(names),
+                    [=](Settings& s, const std::string& v) { s.budget.other = parse_sources(v, sources); },
+                    [=](const Settings& s) { return sources_text(s.budget.other, sources); }, names});
+    keys.push_back({"draws.errors", "steps of which signed errors are columns: " + joined(kept_errors_names()),
+                    [](Settings& s, const std::string& v) { s.budget.errors = parse_kept_errors(v); },
+                    [](const Settings& s) { return kept_errors_names()[static_cast<std::size_t>(s.budget.errors)]; },
+                    kept_errors_names()});
+    for (auto key = keys.end() - 2; key != keys.end(); ++key) key->hidden = true;
 }
 
 }  // namespace credence

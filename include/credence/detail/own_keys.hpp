@@ -14,6 +14,7 @@ namespace credence {
 struct OwnBasics {
     std::string name = "scenario", title, length_unit = "m";
     int poses = 20;
+    BudgetSettings budget{};
 };
 
 /// Those, and the settings of a user's own world.
@@ -24,6 +25,9 @@ struct OwnSettings : OwnBasics {
 
 /// The keys that the scenarios of every world have.
 const std::vector<KeyOf<OwnBasics>>& basic_keys();
+
+/// The sources of a world of one's own: the names of its sources 0, 1 ...
+std::vector<DrawSource> own_sources(const std::vector<std::string>& names);
 
 // Texts as numbers. They throw InputError that names the key.
 double own_real(const std::string& key, const std::string& text, double low, double high);
@@ -76,6 +80,9 @@ public:
                 return place < choices.size() ? choices[place] : std::to_string(place);  // which `set` refuses
             });
     }
+
+    /// Those of a budget, of a world that names its sources.
+    void budget(const std::vector<DrawSource>& sources) { add_budget_keys(keys_, sources); }
 
     /// All of them, those of every world first.
     const std::vector<KeyOf<OwnSettings<Settings>>>& list() const { return keys_; }

@@ -15,6 +15,7 @@ namespace credence {
 struct OwnReport {
     std::vector<Column> columns{};      ///< its own; others are there in every world
     int largest_innovation = 0;         ///< m; 0: the trials give no innovations
+    BudgetSettings budget{};
 };
 
 /// Columns of such a world: trace_P, its own, squared_error, nees_ratio, nis_ratio, mean_trace_P, log_score, status,

@@ -14,6 +14,14 @@
 
 namespace credence {
 
+/// The variances of the state as sums over sources: P propagated for each alone, with the filter's own gains, by
+/// Joseph's form [docs/budget.md].
+struct CountedVariances {
+    std::vector<std::string> sources;
+    std::vector<std::vector<double>> variance;  ///< [sources][n]
+    std::int64_t trials = 0;                    ///< over which they are means
+};
+
 /// Trials of one scenario, ready to run. Thread-safe.
 class Simulation {
 public:
@@ -29,6 +37,9 @@ public:
     /// simulation.
     virtual Trajectory replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,
                               std::int64_t trial) const = 0;
+    /// What P of that arm counts for each source, mean over the first trials and the steps that the scenario keeps the
+    /// errors of; empty where the world does not know. Throws Failure where the parts do not add up to P.
+    virtual CountedVariances counted(std::size_t, std::uint64_t, std::int64_t) const { return {}; }
 };
 
 /// A scenario while its settings are read.
@@ -48,6 +59,12 @@ struct DescribedKey {
     std::string sigma_unit{};             ///< as of KeyOf
 };
 
+/// A source of a world's draws by its name, and its bits [draws.hpp, source_bit].
+struct DrawSource {
+    std::string name;
+    std::uint32_t bits = 0;
+};
+
 /// A kind of world.
 class World {
 public:
@@ -58,6 +75,8 @@ public:
     /// What the trials and steps of a scenario report; the same for every arm.
     virtual std::vector<Column> columns(const Scenario& scenario) const = 0;
     virtual std::vector<Series> all_series(const Scenario& scenario) const = 0;
+    /// The sources that its trials draw from; none of a world that does not name them.
+    virtual std::vector<DrawSource> sources(const Scenario& scenario) const = 0;
     virtual std::unique_ptr<const Simulation> simulation(const Scenario& scenario) const = 0;
 };
 

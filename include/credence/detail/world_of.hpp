@@ -12,13 +12,14 @@
 namespace credence {
 
 /// A world made of a type T with
-///   T::Settings                            a plain struct with name, title, length_unit and poses, and the world's own
+///   T::Settings                            a plain struct with name, title, length_unit, poses and budget, and its own
 ///   name()                                 what `scenario.world` says
 ///   keys()                                 std::vector<KeyOf<Settings>>, in the order in which they are shown
 ///   defaults()                             the settings that `credence show` prints where none are given
 ///   resolved(Settings)                     the settings with every default filled in; throws InputError where keys
 ///                                          contradict each other
 ///   describe(const Settings&, Scenario&)   enters components, groups and arms
+///   sources(const Settings&)               the sources of draws, std::vector<DrawSource>
 ///   columns(const Settings&, const Scenario&), all_series(const Settings&, const Scenario&)
 ///   simulation(const Settings&, const Scenario&)
 /// all of them const, the settings that they are given resolved.
@@ -37,7 +38,12 @@ public:
     }
     std::unique_ptr<Draft> draft() const override { return std::make_unique<DraftOf>(*this); }
     std::vector<Column> columns(const Scenario& scenario) const override {
-        return world_.columns(settings_of(scenario), scenario);
+        const Settings settings = settings_of(scenario);
+        return with_errors(world_.columns(settings, scenario), scenario.components, scenario.poses - 1,
+                           settings.budget);
+    }
+    std::vector<DrawSource> sources(const Scenario& scenario) const override {
+        return world_.sources(settings_of(scenario));
     }
     std::vector<Series> all_series(const Scenario& scenario) const override {
         return world_.all_series(settings_of(scenario), scenario);
@@ -55,6 +61,7 @@ public:
         const Settings defaults = world_.defaults();
         for (const KeyOf<Settings>& key : world_.keys()) {
             const std::string value = key.get(resolved);
+            if (key.hidden && value == key.get(defaults)) continue;
             scenario.settings.push_back({key.name, value, key.later && value == key.get(defaults)});
         }
         world_.describe(resolved, scenario);

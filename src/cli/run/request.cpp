@@ -4,6 +4,7 @@
 #include "cli/version.hpp"
 #include "cli/file_kind.hpp"
 #include "files/system/durable_file.hpp"
+#include "study/budget.hpp"
 #include "base/wording.hpp"
 
 #include <credence/error.hpp>
@@ -41,8 +42,10 @@ Start start_of(const Parsed& parsed) {
     return parsed.has("resume") ? Start::resume : parsed.has("overwrite") ? Start::overwrite : Start::fresh;
 }
 
-/// The scenarios of the files, each at every point of the sweep.
-std::vector<Scenario> scenarios_of(const Parsed& parsed) {
+}  // namespace
+
+std::vector<Scenario> scenarios_of(const Parsed& parsed, std::optional<KeptErrors> kept) {
+    for (const std::string& path : parsed.arguments) check_kind(path, {FileKind::scenario});
     const std::vector<SweepAxis> axes = parsed.sweep();
     const std::size_t count = parsed.arguments.size() * point_count(axes);
     if (!axes.empty() && count > most_swept_scenarios)
@@ -51,13 +54,19 @@ std::vector<Scenario> scenarios_of(const Parsed& parsed) {
                             "Give at most " + std::to_string(most_swept_scenarios) + " in one study");
     std::vector<Scenario> scenarios;
     for (const std::string& path : parsed.arguments)
-        for (Scenario& one : read_grid(path, parsed.overrides(), axes)) scenarios.push_back(std::move(one));
+        for (Scenario& one : read_grid(path, parsed.overrides(), axes)) {
+            if (!kept) scenarios.push_back(std::move(one));
+            else
+                for (Scenario& world : budget_scenarios(one, *kept)) scenarios.push_back(std::move(world));
+        }
     return scenarios;
 }
 
+namespace {
+
 /// Takes the study from the file that is resumed.
 void take_stored(const Parsed& parsed, RunRequest& request) {
-    for (const char* option : {"set", "sweep", "seed", "keep"})
+    for (const char* option : {"set", "sweep", "seed", "keep", "budget"})
         if (parsed.has(option))
             throw InputError(as_option(option) + " needs a scenario",
                              "without one, the study in the file is resumed as it is",
@@ -69,6 +78,11 @@ void take_stored(const Parsed& parsed, RunRequest& request) {
 }
 
 }  // namespace
+
+std::optional<KeptErrors> kept_errors(const Parsed& parsed, const std::string& option) {
+    if (!parsed.has(option)) return std::nullopt;
+    return parsed.choice(option) == "mean" ? KeptErrors::mean : KeptErrors::last;
+}
 
 RunRequest read_request(const Parsed& parsed) {
     const bool is_stored = parsed.arguments.empty() && parsed.has("resume");
@@ -92,9 +106,8 @@ RunRequest read_request(const Parsed& parsed) {
     if (request.options.shard.count > 1 && !request.goals.empty())
         throw InputError("--until and --shard contradict each other", "a shard cannot tell what all of them have",
                          "Give one of them");
-    for (const std::string& path : parsed.arguments) check_kind(path, {FileKind::scenario});
     if (is_stored) take_stored(parsed, request);
-    else request.scenarios = scenarios_of(parsed);
+    else request.scenarios = scenarios_of(parsed, kept_errors(parsed, "budget"));
     return request;
 }
 

@@ -7,6 +7,7 @@
 #include "files/stored_run.hpp"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,13 @@ struct RunRequest {
 
     StoppingRule rule() const { return {goals, options.trials}; }
 };
+
+/// What --budget, or another option of the same choices, asks for.
+std::optional<KeptErrors> kept_errors(const Parsed& parsed, const std::string& option);
+
+/// The scenarios of the files, each at every point of the sweep, and with `kept` each world of its budget. Throws
+/// InputError.
+std::vector<Scenario> scenarios_of(const Parsed& parsed, std::optional<KeptErrors> kept);
 
 /// Reads the options. Throws InputError where they are invalid.
 RunRequest read_request(const Parsed& parsed);

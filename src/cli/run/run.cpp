@@ -48,6 +48,10 @@ const Command& run_command() {
           "memory, journal and file alike, for studies of more trials than a disk holds: no medians, no distributions",
           false,
           {"trials", "aggregates"}},
+         {"budget", "WHEN",
+          "run the worlds of a budget, which `" + program_name() + " budget` reads from the results file: with errors "
+          "at the last step, or their mean over the steps",
+          false, {"last", "mean"}},
          {"commit-every", "BLOCKS",
           "blocks of 256 trials after which the journal is made to last (default: after half a second)"},
          {"dry-run", "", "say what time, memory and file size to expect, and stop"},

@@ -13,8 +13,8 @@
 //       the frame of its rows and innovations.
 //   void update(Belief&, const FilterParameters&, const Layout&, const Sighting<Real>*, const EdgeMeasurement&,
 //               const Linearisation&, Update&)
-//       turns the predicted belief into the updated one; `update` receives the correction, the NIS of the first
-//       linearisation, its rows, and whether every S was positive definite.
+//       turns the predicted belief into the updated one; `update`, an Update or derived from it, receives the
+//       correction, the NIS of the first linearisation, its rows, and whether every S was positive definite.
 //   void initialise(Belief&, const FilterParameters&, const Layout&, int j, const Sighting<Real>&, const Truth&)
 //       called after the update: adds feature j to the belief where it is seen for the first time, replacing its
 //       earlier estimate. Only worlds in which features are not all known from the start, and that have a heading, call
@@ -52,10 +52,9 @@ struct KalmanFilter {
         return AtMean<Layout, Real>(predicted.mean);
     }
 
-    template <class EdgeMeasurement, class Linearisation>
+    template <class EdgeMeasurement, class Linearisation, class Updating>
     void update(State& belief, const FilterParameters& filter, const Layout& layout, const Sighting<Real>* sightings,
-                const EdgeMeasurement& edge_measurement, const Linearisation& linearised,
-                Update<Real, Layout::capacity>& update) {
+                const EdgeMeasurement& edge_measurement, const Linearisation& linearised, Updating& update) {
         update_belief(belief, filter, layout, sightings, edge_measurement, linearised, update);
     }
 

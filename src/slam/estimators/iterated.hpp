@@ -37,10 +37,9 @@ template <class Layout, class Real, int passes>
 struct FilterOfPasses : KalmanFilter<Layout, Real> {
     using typename KalmanFilter<Layout, Real>::State;
 
-    template <class EdgeMeasurement, class Linearisation>
+    template <class EdgeMeasurement, class Linearisation, class Updating>
     void update(State& belief, const FilterParameters& filter, const Layout& layout, const Sighting<Real>* sightings,
-                const EdgeMeasurement& edge_measurement, const Linearisation& linearised,
-                Update<Real, Layout::capacity>& update) {
+                const EdgeMeasurement& edge_measurement, const Linearisation& linearised, Updating& update) {
         const int n = layout.size();
         copy(belief.covariance, n, predicted_);
         condition_belief(belief, filter, layout, sightings, edge_measurement, linearised, update);

@@ -44,10 +44,9 @@ struct RightInvariantFilter : KalmanFilter<Layout, Real> {
 
     /// The update of the Kalman filter, followed by x^ = x^- + V(delta_theta) delta for every point and P <- A P A'
     /// with s = x^ - x^-.
-    template <class EdgeMeasurement, class Linearisation>
+    template <class EdgeMeasurement, class Linearisation, class Updating>
     void update(State& belief, const FilterParameters& filter, const Layout& layout, const Sighting<Real>* sightings,
-                const EdgeMeasurement& edge_measurement, const Linearisation& linearised,
-                Update<Real, Layout::capacity>& update) {
+                const EdgeMeasurement& edge_measurement, const Linearisation& linearised, Updating& update) {
         condition_belief(belief, filter, layout, sightings, edge_measurement, linearised, update);
         Real* delta = update.correction;
         const Rotation<Real> V = chord(delta[Layout::heading]);
@@ -58,6 +57,7 @@ struct RightInvariantFilter : KalmanFilter<Layout, Real> {
         }
         for (int i = 0; i < layout.size(); ++i) belief.mean[i] = belief.mean[i] + delta[i];
         turn_covariance(belief.covariance, layout, delta);
+        update.turned(layout, delta);
     }
 };
 

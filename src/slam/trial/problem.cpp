@@ -109,6 +109,12 @@ std::vector<Control> planner_candidates(const DeformableSettings& s) {
     return candidates;
 }
 
+void set_budget(CommonView& view, const BudgetSettings& budget) {
+    view.other = budget.other;
+    view.keeps_variances = budget.keeps_variances();
+    for (const int step : kept_steps(budget.errors, view.poses - 1)) view.kept_steps[view.kept_count++] = step;
+}
+
 Problem::Problem(const DeformableSettings& resolved_scenario)
     : scenario_(resolved_scenario),
       translation_(feature_translations(scenario_)),
@@ -132,6 +138,7 @@ Problem::Problem(const DeformableSettings& resolved_scenario)
     view_.coverage_bounds = coverage_bounds_.data();
     view_.series_count = static_cast<int>(step_series(scenario_).size());
     view_.charts = charts_of(scenario_);
+    set_budget(view_, scenario_.budget);
     fill_world();
     fill_filter();
     fill_control();

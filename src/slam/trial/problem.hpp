@@ -23,7 +23,16 @@ struct CommonView {
     int series_count = 0;
     Charts charts = Charts::euclidean;
     const double* coverage_bounds = nullptr;  ///< [group_count, coverage_level_count] quantiles of chi-square
+    std::uint32_t other = 0;                  ///< sources whose draws are another world's [draws.hpp]
+    int kept_steps[most_kept_steps] = {}, kept_count = 0;  ///< steps of which the errors are columns [columns.hpp]
+    bool keeps_variances = false;
+
+    /// The columns of errors and variances.
+    int error_columns() const { return kept_count * state_size * (keeps_variances ? 2 : 1); }
 };
+
+/// Fills in what is kept for a budget, after poses and state_size.
+void set_budget(CommonView& view, const BudgetSettings& budget);
 
 /// The further data that a trial in the deformable world reads.
 struct ProblemView : CommonView {

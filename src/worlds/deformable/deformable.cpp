@@ -4,6 +4,9 @@
 
 #include <credence/detail/world_of.hpp>
 #include <credence/error.hpp>
+#include "worlds/values.hpp"
+
+#include <map>
 
 namespace credence {
 
@@ -24,6 +27,25 @@ struct Deformable {
         scenario.components = state_components(settings);
         scenario.groups = state_groups(settings);
         for (const Arm& arm : arms_of(settings)) scenario.arms.push_back(arm_name(arm));
+    }
+    std::vector<DrawSource> sources(const Settings& settings) const {
+        const NoiseSettings& noise = settings.noise;
+        const std::map<std::string, bool> drawn{
+            {"start", noise.initial_heading > 0 || noise.initial_position > 0},
+            {"odometry", noise.odometry > 0},
+            {"heading", settings.process == Process::heading && noise.heading > 0},
+            {"measurement", true},
+            {"walk", noise.walk > 0},
+            {"deformation", noise.deformation > 0},
+            {"edges", settings.truth.edge_noise == EdgeNoise::independent},
+            {"detection", settings.sensor.detection < 1},
+            {"outliers", noise.measurement_tails == Tails::contaminated},
+            {"placement", settings.features.placement != Placement::given},
+            {"bias", noise.odometry_bias > 0},
+            {"control", has_arm(settings, Controller::random)}};
+        std::vector<DrawSource> sources = slam_sources();
+        std::erase_if(sources, [&](const DrawSource& source) { return !drawn.at(source.name); });
+        return sources;
     }
     std::vector<Column> columns(const Settings& settings, const Scenario&) const { return trial_columns(settings); }
     std::vector<Series> all_series(const Settings& settings, const Scenario&) const { return step_series(settings); }
@@ -48,7 +70,7 @@ DeformableSettings settings_of(const Scenario& scenario) {
 DeformableSimulation::DeformableSimulation(std::shared_ptr<const Problem> problem, Target target)
     : problem_(std::move(problem)), target_(std::move(target)), arms_(arms_of(problem_->scenario())) {
     const ProblemView& view = problem_->view();
-    shape_ = {view.poses, view.state_size, column_count, view.series_count, view.group_count};
+    shape_ = {view.poses, view.state_size, column_count + view.error_columns(), view.series_count, view.group_count};
 }
 
 std::size_t DeformableSimulation::workspace_size(std::size_t arm) const {

@@ -224,6 +224,7 @@ Keys all_keys() {
     add_planner_keys(keys);
     add_arm_keys(keys);
     add_published_keys(keys);
+    add_budget_keys(keys, slam_sources());
     return keys;
 }
 

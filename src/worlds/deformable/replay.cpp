@@ -3,6 +3,7 @@
 #include <credence/error.hpp>
 #include "slam/estimators/estimators.hpp"
 #include "slam/trial/trial.hpp"
+#include "worlds/counted.hpp"
 #include "worlds/slam_recorder.hpp"
 
 #include <memory>
@@ -95,7 +96,37 @@ Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, co
     return trajectory;
 }
 
+CountedVariances count(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trials) {
+    const ProblemView& view = problem.view();
+    const NoiseSettings& noise = problem.scenario().noise;
+    const double walk = noise.walk * noise.walk, feature = walk + noise.deformation * noise.deformation;
+    const std::vector<CountedSource> sources =
+        counted_sources(view.filter, feature > 0 ? walk / feature : 0, "measurement");
+    std::vector<double> all_series(static_cast<std::size_t>(view.series_count) *
+                                   static_cast<std::size_t>(view.poses - 1));
+    const auto run_process = [&](auto process) {
+        return with_estimator<process()>(arm.estimator, [&](auto estimator) {
+            using StateLayout = Layout<process(), any_count>;
+            using Estimating =
+                Attributed<typename decltype(estimator)::template type<StateLayout, double>, StateLayout>;
+            const auto work = std::make_unique<Workspace<StateLayout, double, Estimating>>();
+            return count_variances(view, sources, work->estimator, trials,
+                                   [&](std::int64_t trial, auto& observer, double* columns) {
+                const KeyedDraws<double> draws(root_seed, static_cast<std::uint64_t>(trial), view.world.truncate,
+                                               view.other);
+                run_trial(view, arm.controller, draws, observer, *work, columns, all_series.data());
+            });
+        });
+    };
+    return view.process == Process::heading ? run_process(std::integral_constant<Process, Process::heading>{})
+                                            : run_process(std::integral_constant<Process, Process::translation>{});
+}
+
 }  // namespace
+
+CountedVariances DeformableSimulation::counted(std::size_t arm, std::uint64_t root_seed, std::int64_t trials) const {
+    return count(*problem_, arms_[arm], root_seed, trials);
+}
 
 void check_covers(const NoiseRecord& record, const DeformableSettings& scenario, const std::string& file) {
     const auto refuse = [&](const std::string& why, const std::string& remedy) {
@@ -120,6 +151,7 @@ void check_covers(const NoiseRecord& record, const DeformableSettings& scenario,
         refuse("a record has no bias of the odometry", "Set noise.odometry_bias=0");
     if (scenario.noise.measurement_tails == Tails::contaminated)
         refuse("a record has no draws of outliers", "Set noise.measurement_tails=normal");
+    if (scenario.budget.other != 0) refuse("a record has the draws of one world", "Set draws.other=none");
     for (const Controller controller : scenario.arms.controllers)
         if (controller == Controller::random)
             refuse("a record has no draws of candidates", "Leave random out of arms.controllers");
@@ -127,7 +159,8 @@ void check_covers(const NoiseRecord& record, const DeformableSettings& scenario,
 
 Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial) {
     return replay(problem, arm,
-                  KeyedDraws<double>(root_seed, static_cast<std::uint64_t>(trial), problem.view().world.truncate),
+                  KeyedDraws<double>(root_seed, static_cast<std::uint64_t>(trial), problem.view().world.truncate,
+                                     problem.view().other),
                   source_text(root_seed, trial));
 }
 

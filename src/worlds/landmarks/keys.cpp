@@ -51,6 +51,7 @@ std::vector<LandmarkKey> all_keys() {
                     },
                     [](const LandmarkSettings& s) { return names_text(s.estimators, estimator_names()); },
                     estimators_with_heading()});
+    add_budget_keys(keys, landmark_sources());
     return keys;
 }
 
@@ -61,6 +62,8 @@ void check_variance(const char* key, double sigma) {
 }
 
 }  // namespace
+
+std::vector<DrawSource> landmark_sources() { return {slam_sources().begin(), slam_sources().begin() + 4}; }
 
 const std::vector<LandmarkKey>& landmark_keys() {
     static const std::vector<LandmarkKey> keys = all_keys();

@@ -11,4 +11,7 @@ using LandmarkKey = KeyOf<LandmarkSettings>;
 /// All keys but scenario.world, grouped by section, in the order in which they are shown.
 const std::vector<LandmarkKey>& landmark_keys();
 
+/// start, odometry, heading, measurement
+std::vector<DrawSource> landmark_sources();
+
 }  // namespace credence

@@ -26,6 +26,7 @@ struct Landmarks {
         for (const Estimator estimator : settings.estimators)
             scenario.arms.push_back(arm_name({Controller::fixed, estimator}));
     }
+    std::vector<DrawSource> sources(const Settings&) const { return landmark_sources(); }
     std::vector<Column> columns(const Settings& settings, const Scenario&) const {
         return trial_columns(state_of(settings));
     }
@@ -48,7 +49,7 @@ LandmarkSettings landmark_settings_of(const Scenario& scenario) { return WorldOf
 LandmarkSimulation::LandmarkSimulation(const LandmarkSettings& scenario, Target target)
     : problem_(scenario), target_(std::move(target)), arms_(scenario.estimators) {
     const LandmarkView& view = problem_.view();
-    shape_ = {view.poses, view.state_size, column_count, view.series_count, view.group_count};
+    shape_ = {view.poses, view.state_size, column_count + view.error_columns(), view.series_count, view.group_count};
 }
 
 std::size_t LandmarkSimulation::workspace_size(std::size_t arm) const {

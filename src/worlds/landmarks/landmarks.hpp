@@ -28,6 +28,7 @@ public:
     void simulate(std::size_t arm, const Batch& batch) const override;
     Trajectory replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,
                       std::int64_t trial) const override;
+    CountedVariances counted(std::size_t arm, std::uint64_t root_seed, std::int64_t trials) const override;
 
 private:
     LandmarkProblem problem_;

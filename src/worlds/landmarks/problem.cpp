@@ -31,6 +31,7 @@ LandmarkProblem::LandmarkProblem(const LandmarkSettings& scenario) {
     view_.group_count = static_cast<int>(groups.size());
     view_.coverage_bounds = coverage_bounds_.data();
     view_.charts = charts_of(state);
+    set_budget(view_, scenario.budget);
     view_.series_count = static_cast<int>(landmark_series(scenario).size());
     fill_loop(scenario);
     fill_world(scenario);

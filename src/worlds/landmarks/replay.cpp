@@ -2,6 +2,7 @@
 
 #include "slam/estimators/estimators.hpp"
 #include "worlds/landmarks/trial.hpp"
+#include "worlds/counted.hpp"
 #include "worlds/slam_recorder.hpp"
 
 #include <limits>
@@ -20,7 +21,7 @@ Trajectory LandmarkSimulation::replay(const Scenario& scenario, std::size_t arm,
     std::vector<double> all_series(static_cast<std::size_t>(view.series_count) *
                                    static_cast<std::size_t>(view.poses - 1));
     const KeyedDraws<double> draws(root_seed, static_cast<std::uint64_t>(trial),
-                                   std::numeric_limits<double>::infinity());
+                                   std::numeric_limits<double>::infinity(), view.other);
     with_estimator<Process::heading>(arms_[arm], [&](auto estimator) {
         using StateLayout = Layout<Process::heading, any_count>;
         using Estimating = typename decltype(estimator)::template type<StateLayout, double>;
@@ -29,6 +30,23 @@ Trajectory LandmarkSimulation::replay(const Scenario& scenario, std::size_t arm,
     });
     fill_failed(trajectory.columns, trajectory.column_values.data());
     return trajectory;
+}
+
+CountedVariances LandmarkSimulation::counted(std::size_t arm, std::uint64_t root_seed, std::int64_t trials) const {
+    const LandmarkView& view = problem_.view();
+    std::vector<double> all_series(static_cast<std::size_t>(view.series_count) *
+                                   static_cast<std::size_t>(view.poses - 1));
+    return with_estimator<Process::heading>(arms_[arm], [&](auto estimator) {
+        using StateLayout = Layout<Process::heading, any_count>;
+        using Estimating = Attributed<typename decltype(estimator)::template type<StateLayout, double>, StateLayout>;
+        const auto work = std::make_unique<CommonWorkspace<StateLayout, double, Estimating>>();
+        return count_variances(view, counted_sources(view.filter, 0, "start"), work->estimator, trials,
+                               [&](std::int64_t trial, auto& observer, double* columns) {
+            const KeyedDraws<double> draws(root_seed, static_cast<std::uint64_t>(trial),
+                                           std::numeric_limits<double>::infinity(), view.other);
+            run_trial(view, draws, observer, *work, columns, all_series.data());
+        });
+    });
 }
 
 }  // namespace credence

@@ -40,6 +40,7 @@ struct LandmarkSettings {
     std::string title;
     std::string length_unit = "m";
     int poses = 601;                     ///< K, the first included
+    BudgetSettings budget;
     LoopSettings loop;
     LandmarkPlacement landmarks;
     LandmarkSensorSettings sensor;

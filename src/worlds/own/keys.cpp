@@ -1,5 +1,6 @@
 #include <credence/detail/own_keys.hpp>
 
+#include <credence/detail/draws.hpp>
 #include <credence/text.hpp>
 
 #include "worlds/values.hpp"
@@ -13,6 +14,15 @@ const std::vector<KeyOf<OwnBasics>>& basic_keys() {
         return common;
     }();
     return keys;
+}
+
+std::vector<DrawSource> own_sources(const std::vector<std::string>& names) {
+    std::vector<DrawSource> sources;
+    for (const std::string& name : names) {
+        const auto source = static_cast<Source>(sources.size());
+        sources.push_back({name, source_bit(source, 0) | source_bit(source, 1)});
+    }
+    return sources;
 }
 
 double own_real(const std::string& key, const std::string& text, double low, double high) {

@@ -71,7 +71,7 @@ public:
           arms_(scenario.arms),
           target_(target),
           settings_(std::move(settings)),
-          columns_(own_columns(scenario, report)),
+          columns_(with_errors(own_columns(scenario, report), scenario.components, scenario.poses - 1, report.budget)),
           innovations_(report.largest_innovation > 0 ? Innovations::given : Innovations::none),
           all_series_(scenario.components, scenario.groups, innovations_),
           declared_(scenario.groups),
@@ -85,7 +85,8 @@ public:
         view_.coverage_bounds = coverage_bounds_.data();
         view_.world = &world_;
         view_.largest_innovation = report.largest_innovation;
-        view_.column_count = static_cast<int>(columns_.size());
+        set_budget(view_, report.budget);
+        view_.column_count = static_cast<int>(columns_.size()) - view_.error_columns();
         view_.own_column_count = static_cast<int>(report.columns.size());
         for (const Column& column : report.columns) whole_.push_back(column.type == ColumnType::integer);
         view_.whole = whole_.data();
@@ -98,7 +99,8 @@ public:
         view_.run = run_pack;
         view_.settings = settings_.get();
         view_.run_world = run;
-        shape_ = {view_.poses, view_.state_size, view_.column_count, view_.series_count, view_.group_count};
+        shape_ = {view_.poses, view_.state_size, static_cast<int>(columns_.size()), view_.series_count,
+                  view_.group_count};
     }
     LaneSimulation(const LaneSimulation&) = delete;
     LaneSimulation& operator=(const LaneSimulation&) = delete;

@@ -172,7 +172,8 @@ private:
         for (int j = 0; j < state_size; ++j) {
             const Real e = load<Real>(step.error + j * lanes<Real>);
             *series(view_.standardised_error + j) = e / sqrt(P.at(j, j));
-            if (details_.on) details_.errors[j * (poses - 1) + steps] = e;
+            if (details_.keeps_errors) details_.errors[j * (poses - 1) + steps] = e;
+            if (details_.variances != nullptr) details_.variances[j * (poses - 1) + steps] = P.at(j, j);
         }
         if (details_.moments != nullptr) add_step_moments(P);
     }

@@ -1,0 +1,118 @@
+#pragma once
+// What P counts for each source, of some trials of a world of SLAM that are run once more, one by one.
+
+#include <credence/detail/world.hpp>
+#include <credence/error.hpp>
+#include <credence/text.hpp>
+
+#include "slam/estimators/attributed.hpp"
+#include "slam/trial/problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace credence {
+
+/// The parts of the filter's noises: `first_features` is the source of the first estimates of features.
+inline std::vector<CountedSource> counted_sources(const FilterParameters& filter, double share_of_walk,
+                                                  const std::string& first_features) {
+    FilterParameters none = filter;
+    none.variance_heading = none.variance_odometry = none.variance_feature = none.variance_edge = 0;
+    none.variance_initial_heading = none.variance_initial_position = none.measurement_factor = 0;
+    std::vector<CountedSource> sources;
+    const auto add = [&](const std::string& name, auto&& set) {
+        sources.push_back({name, none, name == "start", name == first_features});
+        set(sources.back().filter);
+    };
+    add("start", [](FilterParameters&) {});
+    add("odometry", [&](FilterParameters& own) { own.variance_odometry = filter.variance_odometry; });
+    add("heading", [&](FilterParameters& own) { own.variance_heading = filter.variance_heading; });
+    add("measurement", [&](FilterParameters& own) { own.measurement_factor = filter.measurement_factor; });
+    add("walk", [&](FilterParameters& own) { own.variance_feature = share_of_walk * filter.variance_feature; });
+    add("deformation",
+        [&](FilterParameters& own) { own.variance_feature = (1 - share_of_walk) * filter.variance_feature; });
+    if (filter.edge_count > 0)
+        add("edges", [&](FilterParameters& own) { own.variance_edge = filter.variance_edge; });
+    return sources;
+}
+
+/// Trials that are run for it: 256, or fewer where their states are large and their steps many.
+inline std::int64_t counted_trials(const CommonView& view, std::int64_t trials) {
+    const double room = 4e7 / (static_cast<double>(view.poses) * view.state_size * view.state_size);
+    return std::min(trials, std::clamp(static_cast<std::int64_t>(room), std::int64_t{16}, std::int64_t{256}));
+}
+
+inline namespace CREDENCE_TARGET {
+
+/// Adds up the parts of one trial at the steps that its scenario keeps, and how far their sum is from P.
+template <class Attributing>
+class PartsOfTrial {
+public:
+    PartsOfTrial(const CommonView& view, const Attributing& estimator, CountedVariances& sum)
+        : view_(view), estimator_(estimator), sum_(sum) {}
+
+    template <class... Anything>
+    void started(const Anything&...) {}
+    template <class... Anything>
+    void planned(const Anything&...) {}
+    template <class... Anything>
+    void predicted(const Anything&...) {}
+    template <class Layout, class Belief>
+    void updated(int k, const Layout& layout, const Belief& belief, const double*) {
+        const auto& P = belief.covariance;
+        const int n = layout.size();
+        for (int i = 0; i < n; ++i)
+            for (int j = i; j < n; ++j) {
+                double rest = P.entry[i][j];
+                for (const auto& part : estimator_.parts()) rest -= part.covariance.entry[i][j];
+                largest_rest_ = std::max(largest_rest_, std::abs(rest) / std::sqrt(P.entry[i][i] * P.entry[j][j]));
+            }
+        if (std::find(view_.kept_steps, view_.kept_steps + view_.kept_count, k - 1) ==
+            view_.kept_steps + view_.kept_count)
+            return;
+        const double factor = view_.filter.covariance_factor / view_.kept_count;
+        for (std::size_t s = 0; s < estimator_.parts().size(); ++s)
+            for (int i = 0; i < n; ++i)
+                sum_.variance[s][static_cast<std::size_t>(i)] +=
+                    factor * estimator_.parts()[s].covariance.entry[i][i];
+    }
+    /// The largest |P - sum of P_s| of an entry, relative to the standard deviations of its components.
+    double largest_rest() const { return largest_rest_; }
+
+private:
+    const CommonView& view_;
+    const Attributing& estimator_;
+    CountedVariances& sum_;
+    double largest_rest_ = 0;
+};
+
+/// The mean over the first trials that complete. `run(trial, estimator, observer, columns)` runs one.
+template <class Attributing, class Run>
+CountedVariances count_variances(const CommonView& view, const std::vector<CountedSource>& sources,
+                                 Attributing& estimator, std::int64_t trials, const Run& run) {
+    constexpr double largest_rest = 1e-6;
+    const auto n = static_cast<std::size_t>(view.state_size);
+    CountedVariances none{{}, std::vector<std::vector<double>>(sources.size(), std::vector<double>(n)), 0}, mean = none;
+    for (const CountedSource& source : sources) mean.sources.push_back(source.name);
+    for (std::int64_t trial = 0; trial < counted_trials(view, trials); ++trial) {
+        CountedVariances one = none;
+        double columns[column_count];
+        estimator.attribute(sources);
+        PartsOfTrial<Attributing> parts(view, estimator, one);
+        run(trial, parts, columns);
+        if (columns[column_status] != 0) continue;
+        if (!(parts.largest_rest() <= largest_rest))
+            throw Failure("cannot tell what P counts for each source",
+                          "in trial " + std::to_string(trial) + " they differ from P by " +
+                              to_text(parts.largest_rest()) + " of it",
+                          "An estimator may not condition P by take_in and turn_covariance alone");
+        ++mean.trials;
+        for (std::size_t s = 0; s < sources.size(); ++s)
+            for (std::size_t i = 0; i < n; ++i)
+                mean.variance[s][i] += (one.variance[s][i] - mean.variance[s][i]) / static_cast<double>(mean.trials);
+    }
+    return mean;
+}
+
+}  // namespace CREDENCE_TARGET
+}  // namespace credence
