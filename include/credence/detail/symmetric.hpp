@@ -48,8 +48,13 @@ struct Cholesky {
     }
     /// S^-1, symmetric to the last bit.
     Matrix inverse() const {
-        const Matrix root = whitened(Matrix::Identity(L.rows(), L.cols()));
-        Matrix result(L.rows(), L.cols());
+        Matrix root(L.rows(), L.cols()), result(L.rows(), L.cols());  // L^-1, of which the lower triangle is there
+        for (Index c = 0; c < L.cols(); ++c)
+            for (Index i = c; i < L.rows(); ++i) {
+                root(i, c) = Real(i == c ? 1 : 0);
+                for (Index k = c; k < i; ++k) root(i, c) = fnma(L(i, k), root(k, c), root(i, c));
+                root(i, c) *= reciprocal(i);
+            }
         for (Index i = 0; i < L.rows(); ++i)
             for (Index j = 0; j <= i; ++j) {
                 Real sum = root(i, i) * root(i, j);
