@@ -4,6 +4,7 @@
 #include "bearings_only.hpp"
 #include "coordinated_turn.hpp"
 #include "ins.hpp"
+#include "polygon.hpp"
 #include "robot.hpp"
 
 #include <credence/program.hpp>
@@ -13,6 +14,7 @@ int main(int argc, char** argv) {
     credence::add_own_world<BearingsOnly>();
     credence::add_own_world<CoordinatedTurn>();
     credence::add_own_world<Ins>();
+    credence::add_own_world<Polygon>();
     credence::add_own_world<Robot>();
     return credence::program(argc, argv);
 }

@@ -1,6 +1,5 @@
 #pragma once
-// Module worlds: parts of planners for a world of one's own: templates on the scalar, which run in lanes and for plain
-// doubles alike, without branches on a Real.
+// Module worlds: parts of planners for a world of one's own, in lanes and for plain doubles alike.
 //
 //   Candidates<size>                       the controls to choose from: a list, or a grid
 //   least(count, allowed, cost)            for each trial of a pack, that of least cost among those allowed
@@ -10,10 +9,9 @@
 //   EulerRotation                          from roll, pitch and yaw, with its derivatives
 //   truncated_normal(trial, limit, ...)    draws that are repeated until they are within a limit
 //   update_in_place(P, step, ...)          rows that touch few components, where they were measured
-//   Foresight(P)                           the trace of P after a control and what would be seen then
+//   Foresight(P, square)                   the trace of P after a control and what would be seen then
 //
-// Lanes hold trials where these take the same way through the code. Where they do not, because each sees other things,
-// they may hold the candidates of one trial instead: a planner of experiments/worlds/polygon.hpp does.
+// Where the trials of a pack diverge, as each sees other things, lanes may hold the candidates of one trial instead.
 
 #include <credence/detail/updates.hpp>
 #include <credence/detail/visibility.hpp>
@@ -102,14 +100,19 @@ void each_pack(const std::vector<int>& list, Body&& body) {
 }
 
 /// For one trial the candidate of least cost among those of the list, in any order: cost(index) takes and gives a Real,
-/// which has a candidate in each lane. The result does not depend on the number of lanes.
+/// which has a candidate in each lane. Costs that differ by `tolerance` of the least are equal to it, so that rounding
+/// does not choose among candidates that are the same. The result does not depend on the number of lanes.
 template <class Real, class Cost>
-Least<double> least_of_one(const std::vector<int>& list, Cost&& cost) {
-    Least<double> result;
+Least<double> least_of_one(const std::vector<int>& list, Cost&& cost, double tolerance = 0) {
+    std::vector<double> costs;
     each_pack<Real>(list, [&](const Real& index, int used) {
-        const Real costs = cost(index);
-        for (int lane = 0; lane < used; ++lane) result.take(true, lane_of(costs, lane), lane_of(index, lane));
+        const Real pack = cost(index);
+        for (int lane = 0; lane < used; ++lane) costs.push_back(lane_of(pack, lane));
     });
+    double bound = __builtin_inf();
+    for (const double one : costs) bound = min(bound, one + tolerance * absolute(one));
+    Least<double> result;
+    for (std::size_t i = 0; i < list.size(); ++i) result.take(costs[i] <= bound, bound, list[i]);
     return result;
 }
 
@@ -119,20 +122,20 @@ using Vector3 = Eigen::Matrix<Real, 3, 1>;
 /// Triangles between points, by the points' numbers, of either orientation, and their edges, each once.
 template <int triangle_count>
 struct Mesh {
-    std::array<std::array<int, 3>, triangle_count> triangles;
-    std::array<std::array<int, 2>, 3 * triangle_count> edges{};            ///< from the lower number to the higher
-    std::array<std::array<int, 3>, triangle_count> edge_of{};              ///< of a triangle abc: ab, bc, ca
-    std::array<std::array<bool, 3>, triangle_count> forward{};             ///< whether it goes along them as they do
-    int edge_count = 0;
+    int triangles[triangle_count][3], edges[3 * triangle_count][2]{}, edge_count = 0;
+    int edge_of[triangle_count][3]{};   ///< of a triangle abc: ab, bc, ca
+    bool forward[triangle_count][3]{};  ///< whether it goes along them from the lower number to the higher, as they do
 
-    constexpr explicit Mesh(const std::array<std::array<int, 3>, triangle_count>& list) : triangles(list) {
-        for (std::size_t t = 0; t < triangle_count; ++t)
-            for (std::size_t side = 0; side < 3; ++side) {
-                const int a = triangles[t][side], b = triangles[t][(side + 1) % 3];
-                const std::array<int, 2> edge{a < b ? a : b, a < b ? b : a};
+    constexpr explicit Mesh(const int (&list)[triangle_count][3]) : triangles{} {
+        for (int t = 0; t < triangle_count; ++t)
+            for (int side = 0; side < 3; ++side) {
+                const int a = triangles[t][side] = list[t][side], b = list[t][(side + 1) % 3];
+                const int low = a < b ? a : b, high = a < b ? b : a;
                 int place = 0;
-                while (place < edge_count && edges[static_cast<std::size_t>(place)] != edge) ++place;
-                if (place == edge_count) edges[static_cast<std::size_t>(edge_count++)] = edge;
+                while (place < edge_count && (edges[place][0] != low || edges[place][1] != high)) ++place;
+                if (place == edge_count) ++edge_count;
+                edges[place][0] = low;
+                edges[place][1] = high;
                 edge_of[t][side] = place;
                 forward[t][side] = a < b;
             }
@@ -146,30 +149,30 @@ public:
     /// points [3, any], of doubles or of Reals
     template <class Points>
     MeshView(const Mesh<triangle_count>& mesh, const Points& points, const Vector3<Real>& p) : mesh_(mesh), p_(p) {
-        for (std::size_t e = 0; e < static_cast<std::size_t>(mesh.edge_count); ++e) {
+        for (int e = 0; e < mesh.edge_count; ++e) {
             const Vector3<Real> a = points.col(mesh.edges[e][0]) - p, b = points.col(mesh.edges[e][1]) - p;
             normals_[e] = a.cross(b);
         }
-        for (std::size_t t = 0; t < triangle_count; ++t) {
+        for (int t = 0; t < triangle_count; ++t) {
             const Vector3<Real> c = points.col(mesh.triangles[t][2]) - p;
-            volumes_[t] = along(t, 0, normals_[static_cast<std::size_t>(mesh.edge_of[t][0])].dot(c));
+            volumes_[t] = along(t, 0, normals_[mesh.edge_of[t][0]].dot(c));
         }
     }
 
     /// Whether a triangle is between p and `target`; those with the corner of this number do not count.
     Mask<Real> blocked(const Vector3<Real>& target, int corner = -1) const {
         const Vector3<Real> way = target - p_;
-        std::array<Real, 3 * triangle_count> sides;
-        for (std::size_t e = 0; e < static_cast<std::size_t>(mesh_.edge_count); ++e) sides[e] = normals_[e].dot(way);
+        Real sides[3 * triangle_count];
+        for (int e = 0; e < mesh_.edge_count; ++e) sides[e] = normals_[e].dot(way);
         Mask<Real> result = negated(all_lanes<Real>());
-        for (std::size_t t = 0; t < triangle_count; ++t) {
+        for (int t = 0; t < triangle_count; ++t) {
             const auto& [a, b, c] = mesh_.triangles[t];
             if (a == corner || b == corner || c == corner) continue;
             // A line through the triangle has its edges on one side; the way reaches it at volume / sum of the sides.
             Mask<Real> left = volumes_[t] > Real(0), right = volumes_[t] < Real(0);
             Real sum = Real(0);
-            for (std::size_t i = 0; i < 3; ++i) {
-                const Real side = along(t, i, sides[static_cast<std::size_t>(mesh_.edge_of[t][i])]);
+            for (int i = 0; i < 3; ++i) {
+                const Real side = along(t, i, sides[mesh_.edge_of[t][i]]);
                 left = both(left, side > Real(0));
                 right = both(right, side < Real(0));
                 sum += side;
@@ -181,12 +184,11 @@ public:
 
 private:
     /// What is of an edge, for a triangle that goes along it or against it.
-    Real along(std::size_t t, std::size_t i, const Real& value) const { return mesh_.forward[t][i] ? value : -value; }
+    Real along(int t, int i, const Real& value) const { return mesh_.forward[t][i] ? value : -value; }
 
     const Mesh<triangle_count>& mesh_;
-    Vector3<Real> p_;
-    std::array<Vector3<Real>, 3 * triangle_count> normals_;  ///< of the planes through p and an edge
-    std::array<Real, triangle_count> volumes_;               ///< six times those of the tetrahedra on p
+    Vector3<Real> p_, normals_[3 * triangle_count];  ///< of the planes through p and an edge
+    Real volumes_[triangle_count];                   ///< six times those of the tetrahedra on p
 };
 
 /// The faces of a mesh, for distances of many points from it. Its scalar is that of its points, double or Real.
@@ -195,12 +197,12 @@ class MeshFaces {
 public:
     template <class Points>
     MeshFaces(const Mesh<triangle_count>& mesh, const Points& points) : edge_count_(mesh.edge_count) {
-        for (std::size_t e = 0; e < static_cast<std::size_t>(edge_count_); ++e) {
+        for (int e = 0; e < edge_count_; ++e) {
             edges_[e].from = points.col(mesh.edges[e][0]);
             edges_[e].along = points.col(mesh.edges[e][1]) - edges_[e].from;
             edges_[e].place = edges_[e].along * (Scalar(1) / edges_[e].along.squaredNorm());
         }
-        for (std::size_t t = 0; t < triangle_count; ++t) {
+        for (int t = 0; t < triangle_count; ++t) {
             Face& face = faces_[t];
             face.from = points.col(mesh.triangles[t][0]);
             const Vector3<Scalar> b = points.col(mesh.triangles[t][1]) - face.from;
@@ -218,7 +220,7 @@ public:
     Real clearance(const Vector3<Real>& p) const {
         const Real zero = Real(0), one = Real(1);
         Real least = Real(__builtin_inf());
-        for (std::size_t e = 0; e < static_cast<std::size_t>(edge_count_); ++e) {
+        for (int e = 0; e < edge_count_; ++e) {
             const Vector3<Real> from = p - edges_[e].from;
             const Real place = max(zero, min(one, Real(from.dot(edges_[e].place))));
             least = min(least, Real((from - place * edges_[e].along).squaredNorm()));
@@ -240,8 +242,8 @@ private:
         Vector3<Scalar> from, by_b, by_c, normal;  ///< for the coordinates of a point by the corners b and c
     };
     int edge_count_;
-    std::array<Edge, 3 * triangle_count> edges_;
-    std::array<Face, triangle_count> faces_;
+    Edge edges_[3 * triangle_count];
+    Face faces_[triangle_count];
 };
 
 /// R = R_z(yaw) R_y(pitch) R_x(roll), from the body's frame to the world's, of angles (roll, pitch, yaw) in radians.
@@ -324,7 +326,9 @@ template <class Scalar, int p, int d, int count>
 class Foresight {
 public:
     static constexpr int n = p + d * count;
-    explicit Foresight(const Eigen::Matrix<Scalar, n, n>& P) : P_(P), square_(P * P) {}
+    using Matrix = Eigen::Matrix<Scalar, n, n>;
+    /// `square` is P P, which may be computed for all trials of a pack at once.
+    Foresight(const Matrix& P, const Matrix& square) : P_(P), square_(square) {}
 
     /// The pose's Jacobian F [p, p] and variances Q [p]; of each feature its Jacobian's columns for the pose [d, p],
     /// those of the feature itself being 1, its variance, and whether it would be seen: `rows`, `variances`, `seen`
@@ -333,37 +337,42 @@ public:
     Real trace(const Eigen::Matrix<Real, p, p>& F, const Eigen::Matrix<double, p, 1>& Q,
                const Eigen::Matrix<Real, d, p>* rows, const Real* variances, const Mask<Real>* seen) const {
         using Row = Eigen::Matrix<Real, d, p>;
-        using Block = Eigen::Matrix<Real, d, d>;
-        std::array<Row, count> G, by_P, by_square, moved, noisy;  // H F; of H F P and H F P^2, and of H P^-, the pose
-        std::array<int, count> in_sight;
-        int seen_count = 0;
+        Row G[count];  // H F of those in sight
+        Eigen::Matrix<Real, d, 2 * p> S_left[count], S_right[count];
+        Eigen::Matrix<Real, d, 3 * p> C_left[count], C_right[count];
+        int in_sight[count], seen_count = 0;
         for (int j = 0; j < count; ++j) {
             if (!any(seen[j])) continue;
-            const auto s = static_cast<std::size_t>(seen_count++);
+            const int s = seen_count++;
             in_sight[s] = j;
-            G[s] = rows[j] * F;
-            by_P[s] = G[s] * pose_block(P_) + P_.template block<d, p>(place(j), 0);
-            by_square[s] = G[s] * pose_block(square_) + square_.template block<d, p>(place(j), 0);
-            noisy[s] = rows[j] * Q.asDiagonal();
-            moved[s] = by_P[s] * F.transpose() + noisy[s];
+            G[s] = product_sum(rows[j], F.transpose(), Eigen::Matrix<double, d, p>::Zero());
+            const Row by_P = product_sum(G[s], pose_block(P_), of_pose(P_, j));
+            const Row by_square = product_sum(G[s], pose_block(square_), of_pose(square_, j));
+            const Row noisy = rows[j] * Q.asDiagonal(), moved = product_sum(by_P, F, noisy);
+            S_left[s] << by_P, noisy;
+            S_right[s] << G[s], rows[j];
+            C_left[s] << by_square, moved, -by_P;
+            C_right[s] << G[s], moved, by_P;
         }
         using Square = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, 0, d * count, d * count>;
         Square S(d * seen_count, d * seen_count), C(S.rows(), S.rows());  // H P^- H' + R, and H P^- P^- H'
         for (int a = 0; a < seen_count; ++a)
             for (int b = 0; b <= a; ++b) {
-                const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
-                const int at_i = place(in_sight[i]), at_j = place(in_sight[j]);
-                Block s = by_P[i] * G[j].transpose() + noisy[i] * rows[in_sight[j]].transpose();
-                s += G[i] * P_.template block<p, d>(0, at_j) + P_.template block<d, d>(at_i, at_j);
-                Block c = by_square[i] * G[j].transpose() + moved[i] * moved[j].transpose();
-                c += G[i] * square_.template block<p, d>(0, at_j) + square_.template block<d, d>(at_i, at_j);
-                c -= by_P[i] * by_P[j].transpose();
-                if (a == b) s.diagonal().array() += variances[in_sight[i]];
-                const Mask<Real> both_seen = both(seen[in_sight[i]], seen[in_sight[j]]);
-                const Block unseen = Block::Identity() * Real(a == b ? 1 : 0);
-                S.template block<d, d>(d * a, d * b) = select(both_seen, s, unseen);
-                C.template block<d, d>(d * a, d * b) = select(both_seen, c, 0);
-                C.template block<d, d>(d * b, d * a) = C.template block<d, d>(d * a, d * b).transpose().eval();
+                const int i = in_sight[a], j = in_sight[b];
+                const auto of = [&](const Matrix& matrix) {
+                    return product_sum(G[a], of_pose(matrix, j), matrix.template block<d, d>(p + d * i, p + d * j));
+                };
+                Eigen::Matrix<Real, d, d> s = product_sum(S_left[a], S_right[b], of(P_));
+                Eigen::Matrix<Real, d, d> other = Eigen::Matrix<Real, d, d>::Zero();
+                if (a == b) {
+                    s.diagonal().array() += variances[i];
+                    other.setIdentity();
+                }
+                const Mask<Real> both_seen = both(seen[i], seen[j]);
+                S.template block<d, d>(d * a, d * b) = select(both_seen, s, other);
+                s = select(both_seen, product_sum(C_left[a], C_right[b], of(square_)), 0);
+                C.template block<d, d>(d * a, d * b) = s;
+                C.template block<d, d>(d * b, d * a) = s.transpose();
             }
         const Real features = Real(P_.template bottomRightCorner<n - p, n - p>().trace());
         const Real pose = (F * pose_block(P_)).cwiseProduct(F).sum() + Q.sum();
@@ -371,10 +380,10 @@ public:
     }
 
 private:
-    static int place(int feature) { return p + d * feature; }
-    static auto pose_block(const Eigen::Matrix<Scalar, n, n>& matrix) { return matrix.template topLeftCorner<p, p>(); }
+    static auto pose_block(const Matrix& matrix) { return matrix.template topLeftCorner<p, p>(); }
+    static auto of_pose(const Matrix& matrix, int i) { return matrix.template block<d, p>(p + d * i, 0); }
 
-    Eigen::Matrix<Scalar, n, n> P_, square_;
+    Matrix P_, square_;  ///< P and P P
 };
 
 }  // namespace CREDENCE_TARGET

@@ -18,8 +18,8 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 using Point = Eigen::Vector3d;
 
 /// An octahedron, and a face more, of either orientation.
-constexpr Mesh<9> mesh{{{
-    {0, 1, 2}, {0, 3, 2}, {0, 3, 4}, {0, 1, 4}, {5, 1, 2}, {5, 2, 3}, {5, 3, 4}, {5, 4, 1}, {0, 1, 6}}}};
+constexpr Mesh<9> mesh{{
+    {0, 1, 2}, {0, 3, 2}, {0, 3, 4}, {0, 1, 4}, {5, 1, 2}, {5, 2, 3}, {5, 3, 4}, {5, 4, 1}, {0, 1, 6}}};
 
 class Random {
 public:
@@ -124,12 +124,12 @@ template <class Real, int p, int d, int count>
 void check_foresight(unsigned seed) {
     Random random(seed);
     const Plan<Real, p, d, count> plan(random, seed * 2654435761u);
-    const Foresight<double, p, d, count> foresight(plan.P);
+    const Foresight<double, p, d, count> foresight(plan.P, plan.P * plan.P);
     const Real given = foresight.trace(plan.F, plan.Q, plan.rows.data(), plan.variances.data(), plan.seen.data());
     for (int lane = 0; lane < lanes<Real>; ++lane)
         CHECK(lane_of(given, lane) == Approx(plan.trace(lane)).epsilon(1e-10));  // condition numbers are below 1e4
     // P of each lane's trial gives the same bits as that of one.
-    const Foresight<Real, p, d, count> of_trials(plan.P.template cast<Real>().eval());
+    const Foresight<Real, p, d, count> of_trials(plan.P.template cast<Real>(), (plan.P * plan.P).template cast<Real>());
     const Real again = of_trials.trace(plan.F, plan.Q, plan.rows.data(), plan.variances.data(), plan.seen.data());
     for (int lane = 0; lane < lanes<Real>; ++lane)
         CHECK(lane_of(again, lane) == Approx(lane_of(given, lane)).epsilon(1e-12));
@@ -181,6 +181,8 @@ TEST_CASE("planning: the least cost wins, of equal ones the last that is allowed
                 return all;
             };
             CHECK(least_of_one<double>(list, cost).index == expected);
+            const auto nearly = [&](double index) { return cost(index) * (1 + 1e-14 * index); };
+            CHECK(least_of_one<double>(list, nearly, 1e-12).index == expected);
             CHECK(least_of_one<Lane<4>>(list, cost).index == expected);
         }
     }
@@ -202,9 +204,9 @@ TEST_CASE("planning: a mesh hides what is behind its triangles, and is as near a
             const Point a = of_lane(from, lane), b = of_lane(to, lane);
             bool expected = false, corner_expected = false;
             double least_distance = 1e9;
-            for (const std::array<int, 3>& triangle : mesh.triangles) {
+            for (const auto& triangle : mesh.triangles) {
                 const Point corners[] = {points.col(triangle[0]), points.col(triangle[1]), points.col(triangle[2])};
-                const auto has = [&](int i) { return std::ranges::find(triangle, i) != triangle.end(); };
+                const auto has = [&](int i) { return std::ranges::find(triangle, i) != std::end(triangle); };
                 expected = expected || (!has(corner) && blocked_plainly(a, b, corners));
                 corner_expected = corner_expected || (!has(3) && blocked_plainly(a, points.col(3), corners));
                 least_distance = std::min(least_distance, (b - nearest(b, corners[0], corners[1], corners[2])).norm());

@@ -51,9 +51,9 @@ struct Cholesky {
         Matrix root(L.rows(), L.cols()), result(L.rows(), L.cols());  // L^-1, of which the lower triangle is there
         for (Index c = 0; c < L.cols(); ++c)
             for (Index i = c; i < L.rows(); ++i) {
-                root(i, c) = Real(i == c ? 1 : 0);
-                for (Index k = c; k < i; ++k) root(i, c) = fnma(L(i, k), root(k, c), root(i, c));
-                root(i, c) *= reciprocal(i);
+                Real entry = Real(i == c ? 1 : 0);
+                for (Index k = c; k < i; ++k) entry = fnma(L(i, k), root(k, c), entry);
+                root(i, c) = entry * reciprocal(i);
             }
         for (Index i = 0; i < L.rows(); ++i)
             for (Index j = 0; j <= i; ++j) {
@@ -80,8 +80,11 @@ auto cholesky(const Eigen::MatrixBase<Derived>& S) {
     factor.reciprocal.resize(S.rows());
     Matrix& L = factor.L;
     for (Eigen::Index j = 0; j < L.cols(); ++j) {
-        for (Eigen::Index k = 0; k < j; ++k)
-            for (Eigen::Index i = j; i < L.rows(); ++i) L(i, j) = fnma(L(i, k), L(j, k), L(i, j));
+        for (Eigen::Index i = j; i < L.rows(); ++i) {
+            Real entry = L(i, j);
+            for (Eigen::Index k = 0; k < j; ++k) entry = fnma(L(i, k), L(j, k), entry);
+            L(i, j) = entry;
+        }
         factor.positive_definite = both(factor.positive_definite, L(j, j) > Real(0));
         L(j, j) = sqrt(L(j, j));
         factor.reciprocal(j) = Real(1) / L(j, j);
