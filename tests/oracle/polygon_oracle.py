@@ -1,5 +1,5 @@
-"""The world `polygon` of experiments/worlds in numpy, plainly: all edges are rows, and the covariances of all candidates
-are computed whole. Its noise is given.
+"""The world `polygon` of experiments/worlds in numpy, plainly: all edges are rows, and the covariances of all
+candidates are computed whole. Its noise is given.
 
     python3 polygon_oracle.py SUCCESSOR.h5
 
@@ -13,14 +13,14 @@ import time
 import h5py
 import numpy as np
 
-FLAWS = "roll motion sigma jacobian breath tails edges".split()
+FLAWS = ["roll", "motion", "sigma", "jacobian", "breath", "tails", "edges"]
 M, N = 14, 48
 RING = [(0, -1), (0.5, -0.5), (0.5, 0.5), (0, 1), (-0.5, 0.5), (-0.5, -0.5)]
-REST = np.array([(0, 0, 0), *((x, y, z) for z in (1, 3) for x, y in RING), (0, 0, 4)], float) + [1.5, 0, 0]
+REST = np.array([(0, 0, 0), *((x, y, z) for z in (1, 3) for x, y in RING), (0, 0, 4)]) + np.array([1.5, 0, 0])
 OUTWARD = np.array([(0, 0, 0), *2 * [np.array([x, y, 0]) / np.hypot(x, y) for x, y in RING], (0, 0, 1)])
-MESH = [[int(i) for i in triangle.split()] for triangle in (
-    "0 2 1,2 0 3,2 7 1,7 8 13,7 2 8,8 2 3,13 9 10,13 8 9,9 3 4,9 8 3,3 0 4,9 4 10,"
-    "0 6 1,6 0 5,6 7 1,7 12 13,7 6 12,12 6 5,13 11 10,13 12 11,11 5 4,11 12 5,5 0 4,11 4 10").split(",")]
+TRIANGLES = """0 2 1  2 0 3  2 7 1  7 8 13  7 2 8  8 2 3  13 9 10  13 8 9  9 3 4  9 8 3  3 0 4  9 4 10
+               0 6 1  6 0 5  6 7 1  7 12 13  7 6 12  12 6 5  13 11 10  13 12 11  11 5 4  11 12 5  5 0 4  11 4 10"""
+MESH = np.array(TRIANGLES.split(), int).reshape(-1, 3)
 PAIRS = [(a, b) for a in range(M) for b in range(a + 1, M)]
 ANGLE, MOVE, WALK, BREATH, EDGE = 0.01, 0.02, 0.003, 0.005, 0.5
 Q = np.diag(3 * [ANGLE**2] + 3 * [MOVE**2] + (N - 6) * [WALK**2 + BREATH**2])
@@ -43,7 +43,7 @@ def about(axis, angle, kept=1.0, derivative=False):
     """A turn about an axis, or its derivative, with `kept` on the axis itself; angle [...]"""
     i, j = (axis + 1) % 3, (axis + 2) % 3
     c, s = (-np.sin(angle), np.cos(angle)) if derivative else (np.cos(angle), np.sin(angle))
-    turn = np.zeros(np.shape(angle) + (3, 3))
+    turn = np.zeros((*np.shape(angle), 3, 3))
     turn[..., axis, axis] = kept
     turn[..., i, i] = turn[..., j, j] = c
     turn[..., j, i], turn[..., i, j] = s, -s
@@ -65,7 +65,7 @@ def derivatives(angles, flawed):
 
 def hidden(p, features):
     """Whether the mesh is between p [..., 3] and each feature [..., M], by signed volumes."""
-    result = np.zeros(p.shape[:-1] + (M,), bool)
+    result = np.zeros((*p.shape[:-1], M), bool)
     way = features - p[..., None, :]
     for a, b, c in MESH:
         A, B, C = features[a], features[b], features[c]
@@ -127,20 +127,20 @@ def candidates(flaws):
 def predicted(x, P, turn, move, increment, flawed):
     """The belief before the update; turn and move [..., 3]"""
     R = rotation(x[:3])
-    after = np.broadcast_to(x, turn.shape[:-1] + (N,)).copy()
+    after = np.broadcast_to(x, (*turn.shape[:-1], N)).copy()
     after[..., :3] = wrapped(x[:3] + turn)
     after[..., 3:6] += move @ R.T
     after[..., 6:] += increment.ravel()
-    F = np.broadcast_to(np.eye(N), turn.shape[:-1] + (N, N)).copy()
+    F = np.broadcast_to(np.eye(N), (*turn.shape[:-1], N, N)).copy()
     F[..., 3:6, :3] = np.einsum("kij,...j->...ik", derivatives(x[:3], flawed), move)
     return after, F @ P @ F.swapaxes(-1, -2) + Q
 
 
 def sight_rows(x, flawed):
     """Expected sightings [..., M, 3], and their Jacobian [..., M, 3, N]"""
-    R, delta = rotation(x[..., :3]), x[..., 6:].reshape(x.shape[:-1] + (M, 3)) - x[..., None, 3:6]
+    R, delta = rotation(x[..., :3]), x[..., 6:].reshape((*x.shape[:-1], M, 3)) - x[..., None, 3:6]
     back = np.swapaxes(R, -1, -2)
-    H = np.zeros(x.shape[:-1] + (M, 3, N))
+    H = np.zeros((*x.shape[:-1], M, 3, N))
     H[..., :3] = np.einsum("...kji,...mj->...mik", derivatives(x[..., :3], flawed), delta)
     H[..., 3:6] = -back[..., None, :, :]
     for j in range(M):
@@ -184,7 +184,7 @@ def run(noise, flaws, ranged, arm):
     sigma = sigma_of(q, ranged)
     x = np.concatenate([np.zeros(6), (features + sigma[:, None] * noise["seen"][0]).ravel()])
     P = np.diag(np.concatenate([np.zeros(6), np.repeat(sigma**2, 3)]))
-    names = "trace unseen position rotation features nees nees_pose nees_features control".split()
+    names = ["trace", "unseen", "position", "rotation", "features", "nees", "nees_pose", "nees_features", "control"]
     result = {name: [] for name in names}
     for k in range(1, len(noise["odom"])):
         increment = (amount(k + 1) - amount(k)) * OUTWARD
@@ -248,14 +248,14 @@ def main(path):
                     for seed in ("101", "102"):
                         draws = {name: drawn[()] for name, drawn in file["noise"][tails][seed].items()}
                         expected = file["results"][variant][noise][arm][seed]
-                        begin = time.perf_counter()
+                        begin = time.process_time()
                         given = run(draws, flaws, noise == "ranged", arm)
-                        seconds = time.perf_counter() - begin
+                        seconds = time.process_time() - begin
                         alike = TIED.get((variant, noise, arm, seed), 99)
                         apart = {name: difference(given[name][:alike], expected[name][:alike]) for name in expected
                                  if name not in "xP" or alike > 41}
                         name = max(apart, key=apart.get)
-                        print(f"{variant} {noise} {arm} {seed}: {apart[name]:.1e} ({name}), {seconds:.1f} s", flush=True)
+                        print(variant, noise, arm, f"{seed}: {apart[name]:.1e} ({name}), {seconds:.1f} s", flush=True)
                         worst = max(worst, apart[name])
     return worst < 1e-9
 
