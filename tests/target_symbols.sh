@@ -9,7 +9,7 @@ defined=$(nm -C --defined-only --extern-only "$@" | grep ' ' || true)
 called=$(nm -C --undefined-only "$@" | grep ' ' || true)
 others=$(grep -v " credence::$target::" <<<"$defined" || true
             grep -vE ' U (memcpy|memset|memmove|fma|__stack_chk_fail|_GLOBAL_OFFSET_TABLE_)$' <<<"$called" || true)
-for function in simulate simulate_landmarks simulate_own; do
+for function in simulate simulate_landmarks simulate_explore simulate_own; do
   grep -q " T credence::$target::$function(" <<<"$defined" || { echo "target $target has no function $function"; exit 1; }
 done
 [ -z "$others" ] || { printf 'target %s defines or calls\n%s\n' "$target" "$others"; exit 1; }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -60,7 +61,10 @@ void store_cells(const Octets& from, const EquiprobableCells& cells, const std::
     std::uint16_t* next = arm.cells.data();
     for (std::size_t k = 0; k < from.steps; ++k)
         for (std::size_t trial = 0; trial < from.trials; ++trial)
-            *next++ = static_cast<std::uint16_t>(search.cell(from.nees[k * from.padded + trial]));
+            if (const double nees = from.nees[k * from.padded + trial]; std::isnan(nees))
+                *next++ = no_cell;  // of a state that is there in part
+            else
+                *next++ = static_cast<std::uint16_t>(search.cell(nees));
     for (std::size_t trial = 0; trial < from.trials; ++trial)
         if (!counts(statuses[trial]))
             for (std::size_t k = 0; k < from.steps; ++k) arm.cells[k * from.trials + trial] = no_cell;

@@ -58,6 +58,10 @@ public:
     void started(const Anything&...) {}
     template <class... Anything>
     void planned(const Anything&...) {}
+    template <class... Anything>
+    void priced(const Anything&...) {}
+    template <class... Anything>
+    void explored(const Anything&...) {}
 
     template <class EdgeMeasurement, class Linearisation>
     void predicted(int k, const Layout& layout, const Truth<Real, Layout::feature_capacity>& truth,
@@ -75,7 +79,9 @@ public:
         Real error[Layout::capacity];
         estimation_error(belief, *truth_, layout, error);
         const int n = layout.size();
-        for (int i = 0; i < n; ++i) details_->errors[i * (problem_->poses - 1) + k - 1] = error[i];
+        for (int i = 0; i < n; ++i)
+            details_->errors[i * (problem_->poses - 1) + k - 1] =
+                select(present(belief.covariance.entry[i][i]), error[i], Real(__builtin_nan("")));
         for (int i = 0; details_->variances != nullptr && i < n; ++i)
             details_->variances[i * (problem_->poses - 1) + k - 1] =
                 Real(problem_->filter.covariance_factor) * belief.covariance.entry[i][i];
@@ -83,12 +89,17 @@ public:
     }
 
 private:
+    /// Where a component of this variance is in the state. (One that is not a number is: its trial has failed.)
+    Mask<Real> present(const Real& variance) const {
+        return negated(variance <= Real(problem_->growth.absent_variance));
+    }
+
     /// Errors and covariance in units of each step's own sigma. P is reported times a factor.
     void add_step_moments(int n, const Symmetric<Real, Layout::capacity>& P, const Real* error) {
         const Real inverse_root = Real(1 / __builtin_sqrt(problem_->filter.covariance_factor));
         Real inverse_sigma[Layout::capacity], standardised[Layout::capacity];
         for (int i = 0; i < n; ++i) {
-            inverse_sigma[i] = Real(1) / sqrt(P.entry[i][i]);
+            inverse_sigma[i] = select(present(P.entry[i][i]), Real(1) / sqrt(P.entry[i][i]), Real(0));
             standardised[i] = error[i] * inverse_sigma[i] * inverse_root;
         }
         add_moments(n, [&](int i, int j) { return P.entry[i][j]; }, standardised, inverse_sigma, details_->moments);

@@ -83,15 +83,34 @@ void fold_series(const Unfolded<Real>& unfolded, int f, int start, Octets octets
     store(run_square_sum, to);
 }
 
+/// The coverage bound of each lane's dimension. `bounds` [dimension, coverage_level_count].
+template <class Real>
+Real bound_by_dimension(const double* bounds, const Real& dimension, int level) {
+    Real bound(0);
+    for (int lane = 0; lane < lanes<Real>; ++lane)
+        set_lane(bound, lane, bounds[static_cast<int>(lane_of(dimension, lane)) * coverage_level_count + level]);
+    return bound;
+}
+
 /// Counts the trials whose NEES of block b lies below each coverage bound.
 template <class Real>
-void fold_coverage(const Unfolded<Real>& unfolded, int b, int steps, const double* bounds, const RunningSums& batch) {
+void fold_coverage(const Unfolded<Real>& unfolded, int b, const CommonView& problem, const RunningSums& batch) {
+    const int steps = problem.poses - 1;
+    const Growth& growth = problem.growth;
+    const bool grows = growth.series >= 0 && (b == 0 || b == growth.features);
+    const double* bounds = problem.coverage_bounds + b * coverage_level_count;
+    if (grows)
+        bounds = growth.bounds + (b == 0 ? 0 : (problem.state_size + 1 - growth.pose_size) * coverage_level_count);
     for (int cell = b * steps; cell < (b + 1) * steps; ++cell) {
         int count[coverage_level_count] = {};
         for (int pack = 0; pack < unfolded.packs; ++pack) {
-            const Real value = unfolded.all_series[pack * unfolded.cells + cell];
-            for (int level = 0; level < coverage_level_count; ++level)
-                count[level] += lane_count(both(unfolded.counts[pack], value < Real(bounds[level])));
+            const Real* all_series = unfolded.all_series + pack * unfolded.cells;
+            for (int level = 0; level < coverage_level_count; ++level) {
+                const Real bound =
+                    grows ? bound_by_dimension(bounds, all_series[(growth.series - b) * steps + cell], level)
+                          : Real(bounds[level]);
+                count[level] += lane_count(both(unfolded.counts[pack], all_series[cell] < bound));
+            }
         }
         std::int32_t* to = batch.covered + cell * coverage_level_count;
         for (int level = 0; level < coverage_level_count; ++level) to[level] += count[level];
@@ -109,7 +128,7 @@ void fold(Unfolded<Real>& unfolded, const CommonView& problem, const RunningSums
             else
                 fold_series(unfolded, f, start, octets, steps, batch);
     for (int b = 0; b < problem.group_count; ++b)
-        fold_coverage(unfolded, b, steps, problem.coverage_bounds + b * coverage_level_count, batch);
+        fold_coverage(unfolded, b, problem, batch);
     unfolded.packs = 0;
 }
 
@@ -125,6 +144,16 @@ template <class Real>
     }
     of_octet.keep(diverged);
     fold(of_octet, problem, batch.of_diverged(batch.owner));
+}
+
+/// Replaces the NEES of the whole state by NaN at the steps of a pack at which a part of it is absent.
+template <class Real>
+void forget_parts(const Real* all_series, const CommonView& problem, int trial, const Batch& batch) {
+    const int steps = problem.poses - 1, padded = (batch.trials + octet - 1) / octet * octet;
+    for (int k = 0; k < steps; ++k) {
+        const Mask<Real> whole = all_series[problem.growth.series * steps + k] == Real(problem.state_size);
+        store(select(whole, all_series[k], Real(__builtin_nan(""))), batch.nees + k * padded + trial);
+    }
 }
 
 /// The lanes 0 ... count - 1.
@@ -184,6 +213,7 @@ struct BatchOf {
             double* to = batch.columns + i / octet * count * octet + i % octet;
             for (int c = 0; c < count; ++c) store(columns[c], to + c * octet);
             copy_out(all_series, problem.poses - 1, i, batch, batch.nees);
+            if (problem.growth.series >= 0) forget_parts(all_series, problem, i, batch);
             details.keep(all_series, counts, i, batch);
             if (const Mask<Real> diverged = both(columns[count - 2] == Real(1), place.there); any(diverged))
                 fold_diverged(all_series, diverged, i, problem, batch);

@@ -79,10 +79,14 @@ Accuracy accuracy_of(const ScenarioResults& results, const ArmResults& arm, cons
     return accuracy;
 }
 
-/// Degrees of freedom of the NEES of all trials at a step.
-double degrees_at(const ArmResults& arm, const SeriesTotals& totals, std::size_t k, int dimension) {
-    return totals.dimensions.empty() ? static_cast<double>(arm.totals.counted_at(totals, k)) * dimension
-                                     : static_cast<double>(totals.dimensions[k]);
+/// Degrees of freedom of the NEES of all trials at a step. A series that has `rows` is of a state that grows.
+double degrees_at(const ScenarioResults& results, const ArmResults& arm, std::size_t f, std::size_t k) {
+    const Series& series = results.all_series[f];
+    const SeriesTotals& totals = arm.totals.series[f];
+    const auto count = static_cast<double>(arm.totals.counted_at(totals, k));
+    if (!series.rows.empty())
+        return totals_named(results, arm, series.rows)->sum[k].rounded() + count * series.more_rows;
+    return totals.dimensions.empty() ? count * series.dimension : static_cast<double>(totals.dimensions[k]);
 }
 
 /// Ratios of a NEES to its dimension, over the run and step by step: the same for every chart of the error.
@@ -96,9 +100,10 @@ void fill_ratios(const ScenarioResults& results, const ArmResults& arm, std::siz
     std::vector<double> sums;
     for (std::size_t k = 0; k < totals.sum.size(); ++k) {
         evidence.step.push_back(moments_at(arm, totals, k, 1.0 / series.dimension));
-        evidence.anees.degrees.push_back(degrees_at(arm, totals, k, series.dimension));
+        evidence.anees.degrees.push_back(degrees_at(results, arm, f, k));
         sums.push_back(totals.sum[k].rounded());
-        if (!totals.dimensions.empty() && evidence.anees.degrees.back() > 0)  // of NEES/dim times the whole dimension
+        const bool grows = !totals.dimensions.empty() || !series.rows.empty();
+        if (grows && evidence.anees.degrees.back() > 0)  // of NEES/dim times the whole dimension
             sums.back() *= evidence.anees.degrees.back() /
                            (static_cast<double>(arm.totals.counted_at(totals, k)) * series.dimension);
     }
@@ -108,6 +113,12 @@ void fill_ratios(const ScenarioResults& results, const ArmResults& arm, std::siz
 bool within(double value, const Interval& interval) { return value >= interval.low && value <= interval.high; }
 
 }  // namespace
+
+const SeriesTotals* totals_named(const ScenarioResults& results, const ArmResults& arm, const std::string& name) {
+    for (std::size_t f = 0; f < results.all_series.size(); ++f)
+        if (results.all_series[f].name == name) return &arm.totals.series[f];
+    return nullptr;
+}
 
 Moments run_moments(const ArmResults& arm, const SeriesTotals& totals, int steps, double scale) {
     return scaled(moments_from_sums(arm.totals.counted_in(totals), run_total(totals), totals.run_square_sum.rounded()),
@@ -146,9 +157,7 @@ GroupEvidence group_evidence(const ScenarioResults& results, const ArmResults& a
             evidence.components.push_back(group.component(j));
     for (std::size_t k = 0; k < evidence.step.size(); ++k) {
         const Moments& step = evidence.step[k];
-        const double whole = evidence.dimension,
-                     dimension =
-                         arm.totals.series[f].dimensions.empty() ? whole : evidence.anees.degrees[k] / step.count,
+        const double dimension = evidence.anees.degrees[k] / step.count,
                      deviation = step.standard_deviation * dimension;
         evidence.variance_ratio.push_back(deviation * deviation / (2 * dimension));
     }

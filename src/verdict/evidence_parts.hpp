@@ -5,6 +5,9 @@
 
 namespace credence {
 
+/// The totals of the series of that name; nullptr where there is none.
+const SeriesTotals* totals_named(const ScenarioResults& results, const ArmResults& arm, const std::string& name);
+
 /// Moments of a series over trials at step k + 1, times `scale`.
 Moments moments_at(const ArmResults& arm, const SeriesTotals& totals, std::size_t k, double scale);
 

@@ -11,12 +11,6 @@ namespace credence {
 
 namespace {
 
-const SeriesTotals* totals_named(const ScenarioResults& results, const ArmResults& arm, const std::string& name) {
-    for (std::size_t f = 0; f < results.all_series.size(); ++f)
-        if (results.all_series[f].name == name) return &arm.totals.series[f];
-    return nullptr;
-}
-
 /// Number of rows of a NIS at a step, summed over all trials [docs/statistics.md, NIS]: they vary, so it is not trials
 /// times rows.
 double rows_at(const Series& nis, const SeriesTotals* rows, const ArmResults& arm, std::size_t k) {

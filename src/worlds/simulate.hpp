@@ -2,6 +2,7 @@
 // The interface between the engine and its targets: the same source, compiled once for each instruction set.
 
 #include <credence/detail/batch.hpp>
+#include "worlds/explore/problem.hpp"
 #include "worlds/landmarks/problem.hpp"
 #include "slam/trial/problem.hpp"
 
@@ -23,6 +24,8 @@ struct Target {
     std::size_t (*workspace_size)(const ProblemView&, Estimator) = nullptr;
     void (*simulate_landmarks)(const LandmarkView&, Estimator, const Batch&) = nullptr;
     std::size_t (*landmarks_workspace_size)(const LandmarkView&, Estimator) = nullptr;
+    void (*simulate_explore)(const ExploreView&, const ExploreArm&, const Batch&) = nullptr;
+    std::size_t (*explore_workspace_size)(const ExploreView&, Estimator) = nullptr;
     void (*simulate_own)(const OwnView&, const Batch&) = nullptr;
     std::size_t (*own_workspace_size)(const OwnView&) = nullptr;
 };
@@ -35,12 +38,15 @@ struct Target {
     std::size_t workspace_size(const ProblemView&, Estimator); \
     void simulate_landmarks(const LandmarkView&, Estimator, const Batch&); \
     std::size_t landmarks_workspace_size(const LandmarkView&, Estimator); \
+    void simulate_explore(const ExploreView&, const ExploreArm&, const Batch&); \
+    std::size_t explore_workspace_size(const ExploreView&, Estimator); \
     void simulate_own(const OwnView&, const Batch&); \
     std::size_t own_workspace_size(const OwnView&); \
     }
 #define CREDENCE_LIST_TARGET(name, lanes) \
     Target{#name, lanes, name::simulate, name::workspace_size, name::simulate_landmarks, \
-           name::landmarks_workspace_size, name::simulate_own, name::own_workspace_size}
+           name::landmarks_workspace_size, name::simulate_explore, name::explore_workspace_size, name::simulate_own, \
+           name::own_workspace_size}
 
 /// Environment variable that names the target to run, for tests.
 inline constexpr const char* force_target_variable = "CREDENCE_FORCE_TARGET";

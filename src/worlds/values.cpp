@@ -47,7 +47,8 @@ InputError no_number(const std::string& name, const std::string& value, const st
                          "Write decimals with a point, several values as " + as_option("sweep", name + "=" + value));
 }
 
-/// The parts of a list between commas.
+}  // namespace
+
 std::vector<std::string> list_parts(const std::string& name, const std::string& value) {
     std::vector<std::string> parts = split_list(value), words;
     for (const std::string& part : parts)
@@ -57,23 +58,6 @@ std::vector<std::string> list_parts(const std::string& name, const std::string& 
         throw invalid_value(name, value, "blanks part what commas should", "Write " + joined(words));
     return parts;
 }
-
-/// A list of names of an enumeration, without repeats.
-template <class Enum>
-std::vector<Enum> parse_names(const std::string& name, const std::string& value,
-                              const std::vector<std::string>& names) {
-    std::vector<Enum> values;
-    for (const std::string& part : list_parts(name, value)) {
-        const Enum one = static_cast<Enum>(parse_choice(name, part, names));
-        if (std::find(values.begin(), values.end(), one) != values.end())
-            throw invalid_value(name, value, part + " is given twice", "Name each once");
-        values.push_back(one);
-    }
-    if (values.empty()) throw invalid_value(name, value, "it is empty", "Give at least one of " + joined(names));
-    return values;
-}
-
-}  // namespace
 
 double parse_real(const std::string& name, const std::string& value, const ValueRange& range) {
     const std::optional<double> number = to_number(value);

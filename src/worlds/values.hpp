@@ -5,6 +5,7 @@
 #include "worlds/deformable/keys.hpp"
 #include <credence/text.hpp>
 
+#include <algorithm>
 #include <limits>
 
 namespace credence {
@@ -33,6 +34,24 @@ std::vector<double> parse_reals(const std::string& name, const std::string& valu
 std::string reals_text(const std::vector<double>& values);
 std::int64_t parse_integer(const std::string& name, const std::string& value, std::int64_t low, std::int64_t high);
 std::size_t parse_choice(const std::string& name, const std::string& value, const std::vector<std::string>& choices);
+
+/// The parts of a list between commas. Throws InputError where blanks stand for commas.
+std::vector<std::string> list_parts(const std::string& name, const std::string& value);
+
+/// A list of names of an enumeration, without repeats.
+template <class Enum>
+std::vector<Enum> parse_names(const std::string& name, const std::string& value,
+                              const std::vector<std::string>& names) {
+    std::vector<Enum> values;
+    for (const std::string& part : list_parts(name, value)) {
+        const Enum one = static_cast<Enum>(parse_choice(name, part, names));
+        if (std::find(values.begin(), values.end(), one) != values.end())
+            throw invalid_value(name, value, part + " is given twice", "Name each once");
+        values.push_back(one);
+    }
+    if (values.empty()) throw invalid_value(name, value, "it is empty", "Give at least one of " + joined(names));
+    return values;
+}
 
 /// 1 to `most` points as `x y, x y`.
 std::vector<Point> parse_points(const std::string& name, const std::string& value, std::size_t most);
@@ -82,13 +101,11 @@ KeyOf<S> integer_key(const std::string& name, const std::string& help, int low, 
             [=](const S& s) { return std::to_string(field(s)); }};
 }
 
-template <class Enum, class Field>
-DeformableKey choice_key(const std::string& name, const std::vector<std::string>& choices, Field field) {
+template <class Enum, class S = DeformableSettings, class Field>
+KeyOf<S> choice_key(const std::string& name, const std::vector<std::string>& choices, Field field) {
     return {name, joined(choices),
-            [=](DeformableSettings& s, const std::string& v) {
-                field(s) = static_cast<Enum>(parse_choice(name, v, choices));
-            },
-            [=](const DeformableSettings& s) { return choices[static_cast<std::size_t>(field(s))]; }, choices};
+            [=](S& s, const std::string& v) { field(s) = static_cast<Enum>(parse_choice(name, v, choices)); },
+            [=](const S& s) { return choices[static_cast<std::size_t>(field(s))]; }, choices};
 }
 
 template <class S = DeformableSettings, class Field, class Check>

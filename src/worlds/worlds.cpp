@@ -3,6 +3,7 @@
 #include "base/choice.hpp"
 #include "worlds/deformable/deformable.hpp"
 #include <credence/error.hpp>
+#include "worlds/explore/explore.hpp"
 #include "worlds/landmarks/landmarks.hpp"
 #include <credence/text.hpp>
 
@@ -18,6 +19,7 @@ std::vector<std::unique_ptr<const World>>& registry() {
         auto* known = new std::vector<std::unique_ptr<const World>>;
         known->push_back(deformable_world());
         known->push_back(landmark_world());
+        known->push_back(explore_world());
         return known;
     }();
     return all;
@@ -34,7 +36,7 @@ std::vector<std::string> baselines_among(const std::vector<std::string>& arms) {
             simpler = {"fixed", "waypoints", "follow", "nearest", "random"};
         else if (controller != "fixed")
             simpler = {"fixed"};
-        if (controller == "horizon") simpler.insert(simpler.begin(), "greedy");
+        if (controller == "horizon" || controller == "informed") simpler.insert(simpler.begin(), "greedy");
         const auto runs = [&](const std::string& other) {
             return std::find(arms.begin(), arms.end(), other + rest) != arms.end();
         };

@@ -271,8 +271,8 @@ TEST_CASE("cli: a program of another name says its own in messages, help, comple
 TEST_CASE("cli: show without a scenario names the worlds of the program") {
     const Workplace here;
     CHECK_THAT(here.credence("show").out,
-               Contains("# the world: deformable, landmarks; each has keys of its own, --set scenario.world=landmarks "
-                        "shows them\nscenario.world = deformable\n"));
+               Contains("# the world: deformable, landmarks, explore; each has keys of its own, --set "
+                        "scenario.world=explore shows them\nscenario.world = deformable\n"));
     const std::string landmarks = here.credence("show --set scenario.world=landmarks").out;
     CHECK(landmarks.find("scenario.world = landmarks") == landmarks.rfind("scenario.world = "));
 }

@@ -6,6 +6,7 @@
 #include <bit>
 #include "worlds/deformable/deformable.hpp"
 #include <credence/error.hpp>
+#include "worlds/explore/explore.hpp"
 #include "worlds/landmarks/landmarks.hpp"
 #include "worlds/deformable/keys.hpp"
 #include <credence/text.hpp>
@@ -151,8 +152,11 @@ bool all_agree(const std::vector<Target>& targets) {
         agree = agree_on(targets, scenario_of(problem.scenario()), simulation) && agree;
     }
     const LandmarkSettings landmarks = small_loop();
-    const auto simulation = [&](const Target& target) { return LandmarkSimulation(landmarks, target); };
-    return agree_on(targets, scenario_of(landmarks), simulation) && agree;
+    const auto among_landmarks = [&](const Target& target) { return LandmarkSimulation(landmarks, target); };
+    agree = agree_on(targets, scenario_of(landmarks), among_landmarks) && agree;
+    const ExploreSettings rooms = small_rooms();
+    const auto among_walls = [&](const Target& target) { return ExploreSimulation(rooms, target); };
+    return agree_on(targets, scenario_of(rooms), among_walls) && agree;
 }
 
 int run(const std::vector<std::string>& names) {

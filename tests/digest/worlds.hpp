@@ -1,6 +1,7 @@
 #pragma once
 // The small study of the digest: worlds that together reach every branch of the equations.
 
+#include "worlds/explore/settings.hpp"
 #include "worlds/landmarks/settings.hpp"
 
 #include <string>
@@ -160,6 +161,23 @@ inline LandmarkSettings small_loop() {
     scenario.landmarks = {5, 0.5, 2};
     scenario.sensor = {1.2, 0.3};
     return scenario;
+}
+
+/// Landmarks that are discovered among walls, with every controller.
+inline ExploreSettings small_rooms() {
+    ExploreSettings settings;
+    settings.name = "explore";
+    settings.poses = 10;
+    settings.walls = {{{-1, 1}, {2, 1}}, {{2, 1}, {2, -2}}};
+    settings.features.count = 5;
+    settings.features.extent = 6;
+    settings.sensor.range_max = 3;
+    settings.view = 2.5;
+    settings.box = {{-3, -3}, {3, 3}};
+    settings.coverage = 0.01;
+    settings.explorers = {Explorer::fixed, Explorer::random, Explorer::frontier, Explorer::greedy, Explorer::informed};
+    settings.arms.estimators = std::vector{Estimator::ekf, Estimator::fej};
+    return resolved(settings);
 }
 
 /// The default number of poses of the worlds that do not set their own.

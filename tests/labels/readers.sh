@@ -24,6 +24,7 @@ for wrong in 's/it ends 11 % higher/it ends 12 % higher/' 's/^- \*\*Where it har
   fi
 done
 /usr/bin/python3 tests/oracle/draws_oracle.py build/credence docs/model.md
+/usr/bin/python3 tests/oracle/explore_oracle.py build/credence
 /usr/bin/python3 bench/peers/peers.py --credence build/credence --check
 /usr/bin/python3 tests/reference/make_records.py --big "$records"
 /usr/bin/python3 tests/judge_records.py build/credence "$records"

@@ -87,6 +87,7 @@ class _Frame:
     def show(self, pose: int) -> None:
         axis = self.axis
         axis.clear()
+        trajectory.draw_map(axis, self.trial, pose)
         for feature in np.flatnonzero(self.seen[pose] == 1):
             axis.plot(*np.stack([self.robot[pose], self.features[pose, feature]]).T, color=style.SKY, linewidth=0.8)
         axis.plot(*self.features[pose].T, "o", color=style.GREEN)

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection, LineCollection
+from matplotlib.colors import ListedColormap
+from matplotlib.patches import Wedge
 from scipy import stats
 
 from .._file import FloatArray
@@ -48,6 +50,34 @@ def block(covariance: FloatArray, first: int) -> FloatArray:
     return covariance[:, first:first + 2, first:first + 2]
 
 
+def _numbers(trial: Trajectory, key: str) -> FloatArray:
+    """The numbers of a setting; none where it is `none`."""
+    said = trial.scenario.setting(key).replace(",", " ").split()
+    return np.array([] if said == ["none"] else said, float)
+
+
+def map_box(trial: Trajectory) -> FloatArray:
+    """[low x, high x, low y, high y] of the grid of the world `explore`."""
+    low, cell = _numbers(trial, "map.box")[:2], _numbers(trial, "map.cell")
+    return np.stack([low, low + cell * trial["cell_viewed"].shape[::-1]], axis=1).ravel()
+
+
+def draw_map(axis: Axes, trial: Trajectory, pose: int) -> None:
+    """Of the world `explore`: walls, the cells that were in sight up to a pose, and the view there."""
+    if "cell_viewed" not in trial:
+        return
+    viewed, robot, heading = trial["cell_viewed"], trial.positions("truth")[0], trial["truth"][:, 0]
+    axis.imshow(np.where((viewed >= 0) & (viewed <= pose), 0.0, np.nan), ListedColormap([style.BAND]),
+                extent=tuple(map_box(trial)), origin="lower", interpolation="nearest", zorder=0.1)
+    axis.add_collection(LineCollection(list(_numbers(trial, "walls.segments").reshape(-1, 2, 2)), colors="black",
+                                       linewidths=1.6, zorder=2, label="walls"))
+    half, reach = np.degrees(_numbers(trial, "sensor.view")[0] / 2), _numbers(trial, "sensor.range_max")[0]
+    if np.isfinite(reach):
+        middle = np.degrees(heading[pose])
+        axis.add_patch(Wedge(tuple(robot[pose]), reach, middle - half, middle + half, facecolor=style.SKY, alpha=0.25,
+                             linewidth=0, zorder=0.2))
+
+
 def extent(trial: Trajectory, scale: float) -> FloatArray:
     """[low x, high x, low y, high y] of what the trial holds: all true places, and estimates with their ellipses as far
     as they are within a sixth of its size from the truth, with room for their marks."""
@@ -58,7 +88,7 @@ def extent(trial: Trajectory, scale: float) -> FloatArray:
     reach = scale * np.sqrt(np.diagonal(trial["covariance"], axis1=1, axis2=2)[:, first:])
     near = np.abs(mean - truth) + reach < size / 6
     ends = [np.where(near, end, truth).reshape(-1, 2) for end in (mean - reach, mean + reach, truth)]
-    places = np.concatenate(ends)
+    places = np.concatenate([*ends, map_box(trial).reshape(2, 2).T] if "cell_viewed" in trial else ends)
     places = places[np.isfinite(places).all(axis=1)]
     low, high = places.min(axis=0) - 0.03 * size, places.max(axis=0) + 0.03 * size
     return np.stack([low, high], axis=1).ravel()
@@ -80,6 +110,7 @@ def draw_path(axis: Axes, trial: Trajectory, ellipse: str = "95") -> None:
     """True and estimated path, features, edges, ellipses, and lines of sight to what was seen."""
     (robot, features), (estimate, estimates) = trial.positions("truth"), trial.positions("mean")
     seen, covariance, scale = trial["seen"], trial["covariance"], ELLIPSES[ellipse][0]
+    draw_map(axis, trial, len(robot) - 1)
     colour, first, few = arm_colour(trial), trial.components.index("r_x"), features.shape[1] <= len(FEATURES)
     if "edge" in trial:
         ends = np.stack([features[:, trial["edge_from"]], features[:, trial["edge_to"]]], axis=2).reshape(-1, 2, 2)

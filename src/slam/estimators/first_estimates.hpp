@@ -59,7 +59,7 @@ struct FirstEstimatesFilter : KalmanFilter<Layout, Real> {
     void initialise(State& belief, const FilterParameters& filter, const Layout& layout, int j,
                     const Sighting<Real>& sighting, const World&) {
         initialise_feature(belief, filter, layout, j, sighting, [&](const Vector2<Real>& place) {
-            first_[j] = place;
+            first_[j] = {select(sighting.seen, place.x, first_[j].x), select(sighting.seen, place.y, first_[j].y)};
             return place - position_;
         });
     }

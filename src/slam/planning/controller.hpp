@@ -39,21 +39,31 @@ void add_odometry_noise(Symmetric<Real, capacity>& P, const FilterParameters& fi
 }
 
 /// The belief after one step under a candidate: predict, gate and compute sigma at the predicted mean, update P.
-template <class Layout, class Real, int capacity>
+/// `sees(j, squared)` says where feature j, at a squared range, would be seen.
+template <class Layout, class Real, int capacity, class Sees>
 CREDENCE_FLAT void expect(const Belief<Real, capacity>& base, const Command<Real>& command,
                           const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,
-                          Belief<Real, capacity>& next) {
+                          const Sees& sees, Belief<Real, capacity>& next) {
     const auto n = layout.size();
     each(zero, n, [&](auto i) { next.mean[i] = base.mean[i]; });
     copy(base.covariance, n, next.covariance);
     predict_robot(next, filter, layout, command);
     each(zero, layout.features(), [&](auto j) {
         const Real squared = squared_norm(predicted_difference<Layout>(next.mean, j));
-        const Mask<Real> seen = in_range(sensor, squared);
+        const Mask<Real> seen = sees(j, squared);
         if (any(seen))
             condition(next.covariance, layout, sighting_rows<Layout>(next.mean, j),
                       believed_variance(filter, sigma_at(sensor, squared)), seen);
     });
+}
+
+/// The same where every feature in range would be seen.
+template <class Layout, class Real, int capacity>
+CREDENCE_FLAT void expect(const Belief<Real, capacity>& base, const Command<Real>& command,
+                          const FilterParameters& filter, const SensorParameters& sensor, const Layout& layout,
+                          Belief<Real, capacity>& next) {
+    expect(base, command, filter, sensor, layout,
+           [&](auto, const Real& squared) CREDENCE_INLINE_LAMBDA { return in_range(sensor, squared); }, next);
 }
 
 /// The cost of a candidate, by the direct form: the oracle for the forms of planner.hpp. `next` receives the belief.

@@ -14,6 +14,17 @@ Point polar(double s, double angle);
 /// The range in which a feature is seen, both ends included.
 void set_range(SensorParameters& sensor, double range_min, double range_max);
 
+/// A state whose features enter it one by one. Those that are absent have errors of 0 and a variance below that of
+/// anything known, and NEES of a group that is there in part are those of its part, times the group's dimension over
+/// that of the part.
+struct Growth {
+    int series = -1;                  ///< that counts the components that are there; -1: all are, always
+    int features = 0;                 ///< the group of all features, which lacks what the whole state lacks
+    int pose_size = 0;
+    double absent_variance = 0;       ///< of a component that is absent
+    const double* bounds = nullptr;   ///< [2 (whole state, features), n + 1, coverage_level_count] by dimension
+};
+
 /// The data that a trial of any built-in world reads: plain numbers, and pointers into its problem.
 struct CommonView {
     int poses = 0, features = 0, state_size = 0;
@@ -23,6 +34,7 @@ struct CommonView {
     int series_count = 0;
     Charts charts = Charts::euclidean;
     const double* coverage_bounds = nullptr;  ///< [group_count, coverage_level_count] quantiles of chi-square
+    Growth growth;
     std::uint32_t other = 0;                  ///< sources whose draws are another world's [draws.hpp]
     int kept_steps[most_kept_steps] = {}, kept_count = 0;  ///< steps of which the errors are columns [columns.hpp]
     bool keeps_variances = false;

@@ -165,7 +165,7 @@ CREDENCE_INLINE void add_by_group(const Layout& layout, const Square& square, Re
         reported(position);
     }
     reported(features);
-    each(zero, layout.features(), [&](auto j) { reported(of_feature(j)); });
+    each(zero, layout.group_count() - Layout::group_features - one, [&](auto j) { reported(of_feature(j)); });
 }
 
 /// Evaluates the belief at pose k: writes the step's series (in the order of step_series) and adds to the sums.

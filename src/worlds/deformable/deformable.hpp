@@ -39,6 +39,9 @@ private:
     SimulationShape shape_;
 };
 
+/// Adds the planner's candidates, which are the same at every pose. Returns the place of their costs.
+std::size_t add_candidates(Trajectory& trajectory, const DeformableSettings& settings);
+
 /// One trial of a problem.
 Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial);
 

@@ -29,21 +29,6 @@ TrajectoryVariable candidate_costs(const DeformableSettings& settings) {
             {"pose", "candidate"}};
 }
 
-/// The planner's candidates, which are the same at every pose. Returns the place of their costs.
-std::size_t add_candidates(Trajectory& trajectory, const DeformableSettings& settings) {
-    const std::vector<Control> candidates = planner_candidates(settings);
-    trajectory.dimensions.push_back({"candidate", "candidate of the planner", candidates.size()});
-    const std::size_t turn = trajectory.add({"candidate_turn", "turn of the candidate", "rad", {"candidate"}});
-    const std::size_t move = trajectory.add({"candidate_move", "displacement of the candidate", settings.length_unit,
-                                             {"candidate", "axis"}});
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-        trajectory.variables[turn].values[i] = candidates[i].turn;
-        trajectory.variables[move].values[2 * i] = candidates[i].move.x;
-        trajectory.variables[move].values[2 * i + 1] = candidates[i].move.y;
-    }
-    return trajectory.add(candidate_costs(settings));
-}
-
 /// The recorder of a trial with a planner.
 class Recorder : public SlamRecorder {
 public:
@@ -126,6 +111,20 @@ CountedVariances count(const Problem& problem, const Arm& arm, std::uint64_t roo
 
 CountedVariances DeformableSimulation::counted(std::size_t arm, std::uint64_t root_seed, std::int64_t trials) const {
     return count(*problem_, arms_[arm], root_seed, trials);
+}
+
+std::size_t add_candidates(Trajectory& trajectory, const DeformableSettings& settings) {
+    const std::vector<Control> candidates = planner_candidates(settings);
+    trajectory.dimensions.push_back({"candidate", "candidate of the planner", candidates.size()});
+    const std::size_t turn = trajectory.add({"candidate_turn", "turn of the candidate", "rad", {"candidate"}});
+    const std::size_t move = trajectory.add({"candidate_move", "displacement of the candidate", settings.length_unit,
+                                             {"candidate", "axis"}});
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+        trajectory.variables[turn].values[i] = candidates[i].turn;
+        trajectory.variables[move].values[2 * i] = candidates[i].move.x;
+        trajectory.variables[move].values[2 * i + 1] = candidates[i].move.y;
+    }
+    return trajectory.add(candidate_costs(settings));
 }
 
 void check_covers(const NoiseRecord& record, const DeformableSettings& scenario, const std::string& file) {

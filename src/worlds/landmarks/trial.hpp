@@ -13,9 +13,11 @@ inline namespace CREDENCE_TARGET {
 template <class Layout, class Real, class Estimating>
 void initialise_landmarks(const LandmarkView& problem, const Layout& layout, int k,
                           CommonWorkspace<Layout, Real, Estimating>& work) {
-    for (int j = 0; j < layout.features(); ++j)
-        if (problem.world.first_pose[j] == k)
-            work.estimator.initialise(work.belief, problem.filter, layout, j, work.sightings[j], work.truth);
+    for (int j = 0; j < layout.features(); ++j) {
+        if (problem.world.first_pose[j] != k) continue;
+        work.sightings[j].seen = all_lanes<Real>();
+        work.estimator.initialise(work.belief, problem.filter, layout, j, work.sightings[j], work.truth);
+    }
 }
 
 /// Pose 0, which is known: landmarks in sight are initialised, of the others there is a prior.
