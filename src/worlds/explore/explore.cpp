@@ -25,6 +25,7 @@ struct Explore {
         scenario.groups = explore_groups(settings);
         for (const ExploreArm& arm : arms_of(settings)) scenario.arms.push_back(arm_name(arm));
     }
+    std::vector<DrawSource> sources(const Settings&) const { return {}; }
     std::vector<Column> columns(const Settings& settings, const Scenario&) const { return explore_columns(settings); }
     std::vector<Series> all_series(const Settings& settings, const Scenario&) const { return explore_series(settings); }
     std::unique_ptr<const Simulation> simulation(const Settings& settings, const Scenario&) const {
