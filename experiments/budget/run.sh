@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Prints the tables of docs/budget.md: `tracker` or `coverage`. CREDENCE_PYTHON may name an interpreter
+# Prints the tables of docs/budget.md: `circle`, `tracker` or `coverage`. CREDENCE_PYTHON may name an interpreter
 # (experiments/setup.sh).
 set -euo pipefail
 cd "$(dirname "$0")/../.."

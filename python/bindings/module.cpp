@@ -81,6 +81,7 @@ void say(Said* said, const std::string& name, const std::vector<std::string>& ar
     const cli::Parsed parsed = cli::parsed_of(command_of(name), arguments, values_of(command_of(name), options));
     new (said) Said{alone([&]() -> cli::Rendering {
         if (name == "compare") return cli::compared(parsed);
+        if (name == "budget") return cli::budgeted(parsed);
         return [of = name == "report" ? cli::reported(parsed) : cli::judged(parsed)](const std::string& format) {
             return cli::rendered(of.report, format, of.path, of.run);
         };
@@ -107,6 +108,7 @@ NB_MODULE(_core, module) {
     nb::class_<Said>(module, "Said")
         .def("__init__", say, nb::arg("name"), nb::arg("arguments"), nb::arg("options"))
         .def("in_format", &Said::in, nb::arg("format"));
+    bind_budget(module);
     bind_judge(module);
     bind_turns();
 }

@@ -27,6 +27,17 @@ def write_results_of(records: Sequence[bytes], seed: int, output: bytes) -> None
 def judge_file(
     path: bytes, options: Mapping[str, object], progress: Callable[[int, int], object] | None
 ) -> Said: ...
+def budget(
+    errors: Sequence[npt.NDArray[np.float64]],
+    sources: Sequence[str],
+    components: Sequence[tuple[str, str]],
+    groups: Sequence[tuple[str, Sequence[int]]],
+    variance: Sequence[float],
+    left_out: int,
+    seed: int,
+    at: str,
+    of: str,
+) -> Said: ...
 def command(
     name: str,
     arguments: Sequence[str],

@@ -4,28 +4,31 @@
         z = x + r * rng["measurement", k].normal()          # draws by the name of their source
         ...
     print(credence.budget(run, trials=2000))
+    print(credence.budget("scenario.ini"))
 """
 
 from __future__ import annotations
 
 import contextlib
-import csv
+import dataclasses
 import functools
-import io
+import json
 import math
+import os
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from credence import _core
 from credence import _doors as doors
 from credence._calls import note
 from credence._errors import InputError, invalid, printable, wrong
 from credence._record import Run
 from credence._streams import REST, Streams
 from credence._trials import Array, seed_sequence
-from credence.program import SEED
+from credence.program import SEED, SETTINGS, budget_of, settings_of
 from credence.simulating import SimulatedArm, Simulation, simulate
 
 if TYPE_CHECKING:
@@ -35,7 +38,6 @@ __all__ = ["Budget", "Contribution", "budget"]
 
 AT = ("last", "mean")
 LOOKED_AT = 20  # trials whose sources are the sources
-LARGEST_Z = 3.0  # of the check that the contributions meet the error
 
 
 class _Worlds:
@@ -66,13 +68,17 @@ class Contribution:
     ----------
     source : str
     alone : float
-        Root of the first-order part V of the mean square error, in the unit of the error; NaN where V is not above 0.
+        Root of the first-order part V of the mean square error, in the unit of the error; NaN where V is below 0.
     alone_ci : tuple of float
         Its interval at 95 %, from 0 on.
     share : float
         V over the variance of the error.
     with_others : float
         Root of the total part T, with all interactions.
+    p_counts : float
+        Root of the variance that P counts for the source, of a scenario of our worlds; else NaN.
+    ratio : float
+        V over that variance; NaN where P counts none.
     """
 
     source: str
@@ -80,20 +86,53 @@ class Contribution:
     alone_ci: tuple[float, float]
     share: float
     with_others: float
-
-    @property
-    def json(self) -> dict[str, Any]:
-        return {
-            "source": self.source,
-            "alone": None if math.isnan(self.alone) else self.alone,
-            "alone_ci": list(self.alone_ci),
-            "share": self.share,
-            "with_others": self.with_others,
-        }
+    p_counts: float
+    ratio: float
 
 
-def _root(square: float) -> float:
-    return math.sqrt(square) if square > 0 else math.nan
+@dataclass(frozen=True)
+class Part:
+    """The budget of a component, or of a group of one unit.
+
+    Attributes
+    ----------
+    of, unit : str
+    contributions : list of Contribution
+        By size.
+    mean : float
+        Root of the squared mean error, in the unit of the error.
+    interactions : float
+        Root of half the sum of T - V over the sources: an upper bound where no three sources interact.
+    rss, rmse : float
+        Root of what the contributions and the mean add up to; root mean square error of A and B.
+    closes : bool
+        Whether these two agree within three standard errors.
+    p_says : float
+        Root of the mean variance in the filter's own P of A; NaN where the runs have none.
+    ratio : float
+        Mean square error over that of P.
+    """
+
+    of: str
+    unit: str
+    contributions: list[Contribution]
+    mean: float
+    interactions: float
+    rss: float
+    rmse: float
+    closes: bool
+    p_says: float
+    ratio: float
+
+    @classmethod
+    def of_json(cls, part: Mapping[str, Any]) -> Part:
+        """The part that the program's JSON has."""
+        def known(numbers: Mapping[str, Any]) -> dict[str, Any]:
+            return {name: math.nan if value is None else value for name, value in numbers.items()}
+
+        rows = [known({**row, "alone_ci": tuple(row["alone_ci"])}) for row in part["sources"]]
+        given = {name: value for name, value in part.items() if name != "sources"}
+        return cls(contributions=[Contribution(**row) for row in rows], **known(given))
 
 
 class _Errors:
@@ -119,9 +158,11 @@ class _Errors:
         self.names = self.names or [f"e{j}" for j in range(count)]
         self.units = self.units or [""] * count
         covariance = first.get("covariance")
-        self.variance = None if covariance is None else self._taken(self._variances(covariance, count))
-        if self.variance is not None and len(self.variance) > 1:
-            self.variance = self.variance[counted[: len(self.variance)]]
+        self.variance: list[float] = []  # means over trials and steps, [n]
+        if covariance is not None:
+            variance = self._taken(self._variances(covariance, count))
+            own = variance if len(variance) == 1 else variance[counted[: len(variance)]]
+            self.variance = own.mean(axis=(0, 1)).tolist()
 
     @staticmethod
     def _error(arm: SimulatedArm) -> Array:
@@ -147,146 +188,78 @@ class _Errors:
         return np.nan_to_num(values)
 
 
-def _estimate(values: Array) -> tuple[float, float]:
-    """Mean over the trials of squares of centred numbers [trial], and its standard error."""
-    count = len(values)
-    return float(values.sum() / (count - 1)), float(values.std(ddof=1) / math.sqrt(count))
+def estimated(
+    errors: Sequence[Array], sources: Sequence[str], components: Sequence[tuple[str, str]],
+    groups: Mapping[str, Sequence[int]] | None = None, variance: Sequence[float] = (), left_out: int = 0,
+    seed: int = 1, at: str = "last", of: str | None = None,
+) -> _core.Said:  # fmt: skip
+    """What the program says of the errors [trial, step, n] of the runs A, B, C_0, D_0 and so on.
 
-
-class Part:
-    """The budget of a component, or of a group of one unit.
-
-    Attributes
+    Parameters
     ----------
-    name, unit : str
-    contributions : list of Contribution
-        By size.
-    mean : float
-        Root of the squared mean error, in the unit of the error.
-    interactions : float
-        Root of half the sum of T - V over the sources: an upper bound where no three sources interact.
-    rss, rmse : float
-        Root of what the contributions and the mean add up to; root mean square error of A and B.
-    closes : bool
-        Whether these two agree within three standard errors.
-    p_says : float
-        Root of the mean variance in the filter's own P of A; NaN where the runs have none.
-    ratio : float
-        Mean square error over that of P.
+    errors : list of array
+    sources : list of str
+    components : list of tuple of str
+        Name and unit of each, [n].
+    groups : dict
+        Components by the names of groups.
+    variance : list of float
+        The mean of each variance in P, [n].
+    left_out : int
+        Trials that are not there.
+    seed, at, of
+        As of `budget`.
     """
-
-    def __init__(self, name: str, unit: str, errors: _Errors, members: Sequence[int]) -> None:
-        from scipy import stats
-
-        self.name, self.unit = name, unit
-
-        def centred(arm: str) -> Array:
-            values: Array = errors.of[arm][:, :, members]
-            return np.asarray(values - values.mean(axis=0))
-
-        def squares(values: Array) -> Array:
-            """[trial] summed over the components, averaged over the steps."""
-            return np.asarray(values.sum(axis=2).mean(axis=1))
-
-        a, b = centred("a"), centred("b")
-        own = (squares(a * a) + squares(b * b)) / 2
-        variance, _ = _estimate(own)
-        half = float(stats.t.ppf(0.975, errors.trials - 1))
-        self.contributions: list[Contribution] = []
-        met, interactions = np.zeros(errors.trials), 0.0
-        for i, source in enumerate(errors.sources):
-            x, y = a - centred(f"c{i}"), centred(f"d{i}") - b
-            alone, total = squares(x * y) / 2, squares(x * x + y * y) / 4
-            met += (alone + total) / 2
-            v, error = _estimate(alone)
-            t, _ = _estimate(total)
-            interactions += (t - v) / 2
-            ends = (math.sqrt(max(0.0, v - half * error)), math.sqrt(max(0.0, v + half * error)))
-            share = v / variance if variance > 0 else math.nan
-            self.contributions.append(Contribution(source, _root(v), ends, share, math.sqrt(t)))
-        self.contributions.sort(key=lambda one: -one.with_others)
-        mean = np.concatenate([errors.of["a"], errors.of["b"]])[:, :, members].mean(axis=0)
-        square = max(0.0, float((mean**2).sum(axis=1).mean()) - variance / (2 * errors.trials))
-        self.mean, self.interactions = math.sqrt(square), math.sqrt(max(0.0, interactions))
-        difference, error = _estimate(met - own)
-        self.rss, self.rmse = math.sqrt(max(0.0, _estimate(met)[0]) + square), math.sqrt(variance + square)
-        self.closes = abs(difference) <= LARGEST_Z * error or abs(difference) <= 1e-9 * variance
-        self.p_says = self.ratio = math.nan
-        if errors.variance is not None:
-            says = float(errors.variance[:, :, members].sum(axis=2).mean())
-            self.p_says = math.sqrt(says)
-            self.ratio = self.rmse**2 / says if says > 0 else math.nan
-
-    @property
-    def json(self) -> dict[str, Any]:
-        numbers = ("mean", "interactions", "rss", "rmse", "p_says", "ratio")
-        found = {name: None if math.isnan(value := getattr(self, name)) else value for name in numbers}
-        rows = [one.json for one in self.contributions]
-        return {"of": self.name, "unit": self.unit, "sources": rows, **found, "closes": self.closes}
-
-    def __str__(self) -> str:
-        width = max(10, *(len(one.source) for one in self.contributions))
-        lines = [f"  {'source':<{width}}     alone  95 %                  share  with others"]
-        for one in self.contributions:
-            low, high = one.alone_ci
-            alone = f"{one.alone:9.4g}" if one.alone == one.alone else f"{f'< {high:.3g}':>9}"
-            said = f"{100 * one.share:6.1f} %" if one.share == one.share else f"{'-':>8}"
-            interval = f"{low:.4g} to {high:.4g}"
-            lines.append(f"  {one.source:<{width}} {alone}  {interval:<20} {said}  {one.with_others:.4g}")
-        lines.append(f"  {'mean error':<{width}} {self.mean:9.4g}")
-        doubt = "" if self.closes else ": they do not meet, as three sources or more interact"
-        sums = f"together {self.rss:.4g}, RMSE {self.rmse:.4g}{doubt}"
-        lines.append(f"  interactions at most {self.interactions:.4g}; {sums}")
-        if self.p_says == self.p_says:
-            lines.append(f"  P says {self.p_says:.4g}: the squared error is {100 * self.ratio:.0f} % of it")
-        return "\n".join(lines)
+    arrays = [np.ascontiguousarray(one, dtype=float) for one in errors]
+    return _core.budget(arrays, list(sources), list(components), list((groups or {}).items()), list(variance),
+                        left_out, seed, at, of or "")  # fmt: skip
 
 
 class Budget:
-    """The error of a filter by its sources. ``str()`` is a table.
+    """The error of a filter by its sources. ``str()`` is a table of each arm.
 
     Attributes
     ----------
+    arms : list of str
+        ``scenario/arm``; of a function, ``run`` alone. What follows is of the first of them, ``arm(name)`` of another.
     trials : int
         Those that count: with a result, not diverged, in all of the 2S + 2 runs.
     left_out : int
         The others.
+    counted_trials : int
+        Those over which what P counts is split; 0 where it is not known.
     sources : list of str
     parts : list of str
         The names of the components and groups that there is a budget of: ``budget["position"]`` is a Part.
     of : str
         The one that ``table``, ``str()`` and ``plot()`` show.
-    simulation : Simulation
-        The runs: ``"a"`` is the study itself, ``"b"`` an independent world, ``"c0"`` is A with the first source of B,
-        ``"d0"`` B with the first source of A, and so on.
+    json : list of dict
+        What ``credence budget --format json`` prints: an entry for each arm.
+    csv : str
+        A row for each arm, part and source.
+    simulation : Simulation or None
+        The runs of a function: ``"a"`` is the study itself, ``"b"`` an independent world, ``"c0"`` is A with the first
+        source of B, ``"d0"`` B with the first source of A, and so on.
+    study : Study or None
+        Those of a scenario: the scenario itself, then ``-B``, ``-C-heading``, ``-D-heading`` and so on.
     """
 
-    def __init__(self, simulation: Simulation, sources: Sequence[str], of: str | None, at: str) -> None:
-        errors = _Errors(simulation, sources, at)
-        self.simulation, self.sources, self.at = simulation, list(sources), at
-        self.trials, self.left_out, self.seed = errors.trials, errors.left_out, simulation.seed
-        whole = {"all": list(range(len(errors.names)))}
-        members = whole | errors.groups | {name: [j] for j, name in enumerate(errors.names)}
-        self._parts = {
-            name: Part(name, errors.units[indices[0]], errors, indices)
-            for name, indices in members.items()
-            if len({errors.units[j] for j in indices}) == 1
-        }
-        self.of = next(iter(self._parts)) if of is None else of
-        if self.of not in self._parts:
-            if self.of in members:
-                raise invalid("of", self.of, "its components have several units", f"Take {', '.join(self._parts)}")
-            raise invalid("of", self.of, "there is no such component or group", f"Take {', '.join(self._parts)}")
-        self._warn_of_shifts(errors)
+    def __init__(self, texts: Mapping[str, str], simulation: Any = None, study: Any = None, arm: int = 0) -> None:
+        self._texts, self._arm, self.simulation, self.study = dict(texts), arm, simulation, study
+        self.json: list[dict[str, Any]] = json.loads(texts["json"])
+        self.csv = texts["csv"]
+        own = self.json[arm]
+        self.arms = [f"{one['scenario']}/{one['arm']}".removeprefix("/") for one in self.json]
+        self.trials, self.left_out, self.counted_trials = own["trials"], own["left_out"], own["counted_trials"]
+        self.seed, self.at, self.of, self.sources = own["root_seed"], own["at"], own["of"], own["sources"]
+        self._parts = {part["of"]: Part.of_json(part) for part in own["parts"]}
 
-    def _warn_of_shifts(self, errors: _Errors) -> None:
-        for j, held in enumerate(self.sources):
-            for i, source in enumerate(self.sources):
-                if i != j and not np.array_equal(errors.counts[f"c{i}"][j], errors.counts["a"][j]):
-                    stream = "the generator itself" if held == REST else f"rng[{held!r}]"
-                    note(f"what is drawn from {stream} changes in number with {source}, so that it is not held. "
-                         f"Draw it by its number, too: rng[{held!r}, k].")  # fmt: skip
-                    break
+    def arm(self, name: str) -> Budget:
+        """The budget of the arm of this name, ``scenario/arm``, or ``arm`` where one scenario has it."""
+        found = [i for i, one in enumerate(self.arms) if name in (one, one.rpartition("/")[2])]
+        if len(found) != 1:
+            raise KeyError(f"there is no one arm {name}. There is {', '.join(self.arms)}")
+        return Budget(self._texts, self.simulation, self.study, found[0])
 
     @property
     def parts(self) -> list[str]:
@@ -299,41 +272,34 @@ class Budget:
 
     @property
     def table(self) -> list[dict[str, Any]]:
-        """A row for each source: its name, `alone`, `alone_ci`, `share` and `with_others`."""
-        return [one.json for one in self[self.of].contributions]
-
-    @property
-    def json(self) -> dict[str, Any]:
-        said = {name: getattr(self, name) for name in ("trials", "left_out", "seed", "at")}
-        return {**said, "parts": [part.json for part in self._parts.values()]}
-
-    @property
-    def csv(self) -> str:
-        """A row for each part and source."""
-        text = io.StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(["of", "unit", "source", "alone", "alone_low", "alone_high", "share", "with_others"])
-        for part in self._parts.values():
-            for one in part.contributions:
-                numbers = [one.alone, *one.alone_ci, one.share, one.with_others]
-                writer.writerow([part.name, part.unit, one.source, *map(repr, numbers)])
-        return text.getvalue()
+        """A row for each source: its name, `alone`, `alone_ci`, `share`, `with_others`, `p_counts` and `ratio`."""
+        return [dataclasses.asdict(one) for one in self[self.of].contributions]
 
     def plot(self) -> Picture:
-        """Bars of what each source contributes, alone and with others, beside the whole error and P's."""
+        """Bars of what each source contributes, alone and with others, beside what P counts, and the whole error."""
         from credence.pictures.budget import picture
 
         return picture(self)
 
     def __str__(self) -> str:
-        part = self[self.of]
-        when = "at the last step" if self.at == "last" else "on average over the steps"
-        unit = f" [{part.unit}]" if part.unit not in ("", "1") else ""
-        left = f"; {self.left_out} more that failed or diverged in a run are left out" if self.left_out else ""
-        return f"error of {self.of}{unit} {when}, by its sources: {self.trials} trials{left}\n{part}\n"
+        return self._texts["text"]
 
     def __repr__(self) -> str:
         return f"<credence.Budget of {', '.join(self.sources)}: {self.trials} trials>"
+
+
+def _texts(said: _core.Said) -> dict[str, str]:
+    return {form: said.in_format(form) for form in ("text", "json", "csv")}
+
+
+def _warn_of_shifts(sources: Sequence[str], errors: _Errors) -> None:
+    for j, held in enumerate(sources):
+        for i, source in enumerate(sources):
+            if i != j and not np.array_equal(errors.counts[f"c{i}"][j], errors.counts["a"][j]):
+                stream = "the generator itself" if held == REST else f"rng[{held!r}]"
+                note(f"what is drawn from {stream} changes in number with {source}, so that it is not held. "
+                     f"Draw it by its number, too: rng[{held!r}, k].")  # fmt: skip
+                break
 
 
 def _at(name: str, value: Any) -> str:
@@ -355,10 +321,41 @@ def _sources_of(run: Callable[..., Any], seed: int, trials: int) -> list[str]:
     return list(found)
 
 
-@doors.door(trials=doors.whole(2), seed=SEED, at=_at, executor=doors.executor, progress=doors.flag)
+def _of_function(
+    run: Callable[..., Any], trials: int, seed: int, of: str | None, at: str, executor: Any, progress: bool | None
+) -> Budget:
+    sources = _sources_of(run, seed, trials)
+    arms: dict[str, dict[str, Any]] = {"a": {"other": ()}, "b": {"other": tuple(sources)}}
+    for i, source in enumerate(sources):
+        arms[f"c{i}"] = {"other": (source,)}
+        arms[f"d{i}"] = {"other": tuple(one for one in sources if one != source)}
+    simulation = simulate(_Worlds(run, sources), trials, seed=seed, arms=arms, executor=executor, progress=progress)
+    errors = _Errors(simulation, sources, at)
+    said = estimated(
+        [errors.of[name] for name in arms], sources, list(zip(errors.names, errors.units)),
+        {"all": range(len(errors.names)), **errors.groups}, errors.variance, errors.left_out, seed, at, of,
+    )  # fmt: skip
+    made = Budget(_texts(said), simulation)
+    _warn_of_shifts(sources, errors)
+    return made
+
+
+def _of_scenario(
+    run: Any, trials: int, seed: int, of: str | None, at: str, executor: Any, progress: bool | None,
+    settings: Mapping[str, object],
+) -> Budget:  # fmt: skip
+    options = {"trials": trials, "seed": seed, **settings}
+    said, study = budget_of(run, of, at, options, executor, progress)
+    return Budget(_texts(said), study=study)
+
+
+@doors.door(
+    trials=doors.whole(2), seed=SEED, at=_at, executor=doors.executor, progress=doors.flag, set=SETTINGS,
+    sweep=doors.sweep,
+)  # fmt: skip
 def budget(
-    run: Callable[..., Any],
-    trials: int,
+    run: Callable[..., Any] | str | os.PathLike[str],
+    trials: int = 10_000,
     *,
     seed: int = 1,
     of: str | None = None,
@@ -366,6 +363,8 @@ def budget(
     executor: Any = None,
     progress: bool | None = None,
     options: Mapping[str, Any] | None = None,
+    set: Mapping[str, object] | None = None,
+    sweep: Mapping[str, Any] | None = None,
 ) -> Budget:
     """Tell the error of a filter by its sources: each is drawn anew with all others held.
 
@@ -375,21 +374,24 @@ def budget(
 
     Parameters
     ----------
-    run : function
-        As of `credence.simulate`. It draws by the names of the sources, ``rng["measurement", k].normal()`` at step k;
-        what it draws from ``rng`` itself is the source ``"rest"``. Its `Run` has ``error``.
+    run : function, path or str
+        A function as of `credence.simulate`, which draws by the names of the sources,
+        ``rng["measurement", k].normal()`` at step k; what it draws from ``rng`` itself is the source ``"rest"``. Its
+        `Run` has ``error``. Or a scenario file, or the text of one, as of `credence.run`.
     trials : int
         Of each of the 2S + 2 runs, S the number of sources.
     seed : int
-        From 0 to 2^64 - 1. A is what `simulate` gives with it, bit for bit.
+        From 0 to 2^64 - 1. A is what `simulate` or `run` gives with it, bit for bit.
     of : str
         The component, or group of one unit, that is shown; by default the whole state or else the first group.
     at : str
-        ``"last"`` step of each run, or the ``"mean"`` over its steps.
+        ``"last"`` step of each run, or the ``"mean"`` over its steps: of a scenario, over ten of them.
     executor, progress
         As of `credence.simulate`.
     options : dict
-        Further arguments of `run`.
+        Further arguments of a function.
+    set, sweep : dict
+        Values of keys of a scenario, as of `credence.run`.
 
     Returns
     -------
@@ -400,15 +402,12 @@ def budget(
     InputError
         A ValueError: `run` draws nothing, has no error, or `of` is no component or group of one unit.
     """
+    if isinstance(run, (str, os.PathLike)):
+        if options:
+            raise wrong("options", "a scenario has keys", "Give them as set")
+        return _of_scenario(run, trials, seed, of, at, executor, progress, settings_of(set, sweep))
     if not callable(run):
-        raise wrong("run", f"a {type(run).__name__} cannot be called", "Give a function of a generator")
-    doors.needed("scipy.stats", "scipy", "give intervals")
-    function = functools.partial(run, **(options or {}))
-    sources = _sources_of(function, seed, trials)
-    arms: dict[str, dict[str, Any]] = {"a": {"other": ()}, "b": {"other": tuple(sources)}}
-    for i, source in enumerate(sources):
-        arms[f"c{i}"] = {"other": (source,)}
-        arms[f"d{i}"] = {"other": tuple(one for one in sources if one != source)}
-    worlds = _Worlds(function, sources)
-    simulation = simulate(worlds, trials, seed=seed, arms=arms, executor=executor, progress=progress)
-    return Budget(simulation, sources, of, at)
+        raise wrong("run", f"a {type(run).__name__} cannot be called", "Give a function of a generator, or a scenario")
+    if set or sweep:
+        raise wrong("set", "a function has no keys", "Give its arguments as options")
+    return _of_function(functools.partial(run, **(options or {})), trials, seed, of, at, executor, progress)

@@ -233,16 +233,36 @@ def run(
             raise InputError("cannot stop shards by until (none of them has all trials). Leave executor out.")
         if output is not None and os.path.exists(output) and not overwrite:
             raise InputError(f"cannot write {output} (it exists). Say overwrite=True, or name another.")
-        options["threads"] = threads or 1
-        from credence._shards import shards_of
-
-        with scenario_files(path_or_text) as paths, shards_of(paths, options, executor, shards, progress) as parts:
-            return merge(parts, output, overwrite=overwrite, progress=False)
+        return _run_shards(path_or_text, options, executor, shards, progress, output, overwrite)
     elif shards is not None:
         raise InputError("shards: say nothing without an executor. Give both, or leave it out.")
     options |= {"overwrite": overwrite, "until": _goals(until)}
     with scenario_files(path_or_text) as paths:
         return _written("run", paths, options, output, progress)
+
+
+def _run_shards(
+    path_or_text: File | Sequence[File], options: Mapping[str, object], executor: Any, shards: int | None,
+    progress: bool | None, output: File | None = None, overwrite: bool = False,
+) -> Study:  # fmt: skip
+    from credence._shards import shards_of
+
+    of_each = {**options, "threads": options.get("threads") or 1}
+    with scenario_files(path_or_text) as paths, shards_of(paths, of_each, executor, shards, progress) as parts:
+        return merge(parts, output, overwrite=overwrite, progress=False)
+
+
+def budget_of(
+    path_or_text: File, of: str | None, at: str, options: Mapping[str, object], executor: Any, progress: bool | None
+) -> tuple[_core.Said, Study]:
+    """The budget of a scenario, and the study of its worlds [credence.budget]."""
+    options = {**options, "budget": at}
+    if executor is not None:
+        study = _run_shards(path_or_text, options, executor, None, progress)
+    else:
+        with scenario_files(path_or_text) as paths:
+            study = _written("run", paths, options, None, progress)
+    return _said("budget", [study.path], {"of": of}), study
 
 
 @doors.door(paths=doors.paths, output=doors.output, overwrite=doors.flag, progress=doors.flag)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import math
 import re
-from types import SimpleNamespace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from conftest import refused
 import credence
 from credence._streams import REST, Streams
 from credence._trials import generator, seed_sequence
-from credence.budgeting import Part
+from credence.budgeting import estimated
 
 STEPS, DECAY, NOISE, GAIN = 6, 0.9, {"start": 1.0, "process": 0.3, "measurement": 0.5}, (0.4, 0.7)
 
@@ -61,7 +62,8 @@ def test_shares_of_a_linear_filter_are_those_of_the_closed_form(at):
         assert part.interactions == pytest.approx(0, abs=1e-6)
         assert part.rmse**2 == pytest.approx(sum(expected.values()), rel=0.15)
         assert part.p_says**2 == pytest.approx(0.1)
-    assert budget["place"].json["sources"] == budget["x"].json["sources"]
+    assert budget["place"].contributions == budget["x"].contributions
+    assert all(math.isnan(one.p_counts) and math.isnan(one.ratio) for one in budget["x"].contributions)
 
 
 def product(rng):
@@ -165,10 +167,68 @@ def test_a_source_that_the_first_trials_do_not_have_fails_its_trial():
     assert "draws from rare, which none of the first 20 trials does" in budget.simulation.failures[0].reason
 
 
+SMALL = "[scenario]\nname = small\nposes = 3\n[arms]\ncontrollers = fixed, greedy\n[planner]\nspeeds = 1\n"
+
+
+def test_the_budget_of_a_scenario_is_that_of_the_program_for_any_executor(tmp_path):
+    budget = credence.budget(SMALL, 300, of="position", progress=False)
+    assert budget.arms == ["small/fixed.ekf", "small/greedy.ekf"]
+    assert budget.sources == ["odometry", "heading", "measurement", "walk", "deformation"]
+    assert budget.json == credence.budget(SMALL, 300, of="position", executor=2, progress=False).json
+    study = credence.run(SMALL, trials=300, progress=False)
+    for column in ("trace_P", "pose_error"):
+        assert np.array_equal(budget.study["small", "greedy.ekf"][column], study["greedy.ekf"][column])
+    greedy = budget.arm("greedy.ekf")
+    assert greedy["position"].contributions != budget["position"].contributions
+    for part in (budget["position"], greedy["f0_x"]):
+        assert sum(one.p_counts**2 for one in part.contributions) == pytest.approx(part.p_says**2, rel=1e-9)
+    with pytest.raises(KeyError, match="no one arm x"):
+        budget.arm("x")
+    budget.plot().save(tmp_path / "budget.png")
+    swept = credence.budget(SMALL, 20, sweep={"noise.heading": [0.001, 0.1]}, progress=False)
+    assert len(swept.arms) == 4
+
+
+# Of a NumPy program that knows neither ours nor its draws, 20,000 trials: alone, its interval, with others, P counts.
+PROTOTYPE = {
+    0.001: {
+        "odometry": (0.1225, (0.1219, 0.1232), 0.1225, 0.1221),
+        "heading": (0.0396, (0.0392, 0.0400), 0.0396, 0.0397),
+        "walk": (0.0103, (0.0102, 0.0104), 0.0105, 0.0107),
+        "deformation": (0.0021, (0.0021, 0.0021), 0.0027, 0.0074),
+    },
+    0.1: {
+        "heading": (2.52, (2.50, 2.54), 2.72, 2.28),
+        "walk": (0.253, (0.226, 0.277), 1.05, 0.595),
+        "deformation": (0.097, (0.076, 0.115), 0.573, 0.502),
+    },
+}
+
+
+@pytest.mark.parametrize("heading", PROTOTYPE)
+def test_the_document_s_circle_has_the_budget_of_an_independent_program(heading):
+    scenario = Path(__file__).parents[2] / "experiments" / "seed" / "ekf-circle-ranged.ini"
+    budget = credence.budget(scenario, of="position", progress=False,
+                             set={"noise.heading": heading, "arms.controllers": "fixed"})  # fmt: skip
+    found = {one.source: one for one in budget["position"].contributions}
+    assert budget["position"].closes == (heading < 0.01)  # beyond, three sources interact, there as here
+    for name, (alone, (low, high), with_others, p_counts) in PROTOTYPE[heading].items():
+        one = found[name]
+        wide = math.hypot(high - low, one.alone_ci[1] - one.alone_ci[0]) / 2 / 1.96
+        digit = 5 * 10.0 ** -(4 if heading < 0.01 else 3)  # what is not printed
+        assert one.alone == pytest.approx(alone, abs=3.5 * wide + digit / 10)
+        assert one.with_others == pytest.approx(with_others, rel=0.04, abs=digit / 10)
+        counts = math.hypot(one.p_counts, found["edges"].p_counts if name == "deformation" else 0)  # one sigma
+        assert counts == pytest.approx(p_counts, rel=0.04, abs=digit / 10)
+
+
 REFUSALS = [
     (lambda rng: credence.Run(np.ones((2, 1)), np.ones((2, 1))), {}, "it draws nothing from rng"),
-    (linear, {"of": "z"}, "there is no such component or group). Take place, x, y"),
-    (linear, {"of": "all"}, "its components have several units"),
+    (linear, {"of": "z"}, "invalid of=z (there is no such component, or group of one unit). Take place, x, y"),
+    (linear, {"of": "all"}, "there is no such component, or group of one unit"),
+    (linear, {"set": {"noise.heading": 1}}, "a function has no keys"),
+    ("small.ini", {"options": {"q": 1}}, "a scenario has keys"),
+    (SMALL, {"of": "pose"}, "Take heading, position, features"),
     (linear, {"at": "first"}, "Take last or mean"),
     (lambda rng: credence.Run(nees=rng["x"].chisquare(2, 3), dimension=2), {}, "has no error [step, n]"),
     (3, {}, "a int cannot be called"),
@@ -187,6 +247,7 @@ def test_text_csv_and_picture_say_the_same(tmp_path):
     assert [float(row["alone"]) for row in rows if row["of"] == "x"] == [row["alone"] for row in budget.table]
     for row in budget.table:
         assert f"{row['alone']:9.4g}" in str(budget)
+    assert budget.arms == ["run"]
     budget.plot().save(tmp_path / "budget.png")
     assert (tmp_path / "budget.png").stat().st_size > 1000
     assert "Budget of start, process, measurement" in repr(budget)
@@ -198,11 +259,11 @@ def test_intervals_of_a_linear_function_cover():
     held = np.zeros(3)
     for _ in range(400):
         a, b = rng.normal(size=(2, trials, 3)) * scales
-        swapped = {f"{name}{i}": np.where(np.arange(3) == i, theirs, own)
-                   for i in range(3) for name, own, theirs in (("c", a, b), ("d", b, a))}  # fmt: skip
-        of = {name: one.sum(axis=1)[:, None, None] for name, one in ({"a": a, "b": b} | swapped).items()}
-        errors = SimpleNamespace(of=of, trials=trials, sources=["0", "1", "2"], variance=None)
-        for one in Part("x", "", errors, [0]).contributions:
-            held[int(one.source)] += one.alone_ci[0] <= scales[int(one.source)] <= one.alone_ci[1]
+        swapped = [np.where(np.arange(3) == i, theirs, own) for i in range(3) for own, theirs in ((a, b), (b, a))]
+        errors = [one.sum(axis=1)[:, None, None] for one in (a, b, *swapped)]
+        said = json.loads(estimated(errors, ["0", "1", "2"], [("x", "")]).in_format("json"))
+        for one in said[0]["parts"][0]["sources"]:
+            low, high = one["alone_ci"]
+            held[int(one["source"])] += low <= scales[int(one["source"])] <= high
     assert (held / 400 > 0.91).all(), held / 400
     assert (held / 400 < 0.98).all(), held / 400

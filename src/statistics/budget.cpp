@@ -110,7 +110,7 @@ private:
         const Estimate V = estimate_of(alone);
         const double T = estimate_of(total).value,
                      half = t_quantile(0.05, static_cast<double>(errors_.trials - 1)) * V.standard_error;
-        part_.contributions.push_back({errors_.sources[s], V.value > 0 ? std::sqrt(V.value) : nan,
+        part_.contributions.push_back({errors_.sources[s], V.value >= 0 ? std::sqrt(V.value) : nan,
                                        {root(V.value - half), root(V.value + half)},
                                        variance_ > 0 ? V.value / variance_ : nan, std::sqrt(T), nan, nan});
         return (T - V.value) / 2;

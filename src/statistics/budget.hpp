@@ -18,7 +18,7 @@ namespace credence {
 /// What one source contributes to the error of a component or group, in its unit.
 struct Contribution {
     std::string source;
-    double alone = 0;        ///< sqrt(V); NaN where the estimate of V is not above 0
+    double alone = 0;        ///< sqrt(V); NaN where the estimate of V is below 0
     Interval alone95;        ///< from 0 on
     double share = 0;        ///< V over the variance of the error
     double with_others = 0;  ///< sqrt(T)

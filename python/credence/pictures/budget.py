@@ -28,6 +28,9 @@ def _drawn(budget: Any) -> Picture:
     axes.barh(places - 0.2, shown, 0.38, color=style.BLUE, label="alone, with 95 %")
     axes.hlines(places - 0.2, low, high, color="black", linewidth=0.8)
     axes.barh(places + 0.2, [one.with_others for one in rows], 0.38, color=style.SKY, label="with others")
+    if budget.counted_trials:
+        counts = [one.p_counts for one in rows]
+        axes.vlines(counts, places - 0.4, places + 0.4, color=style.VERMILION, linewidth=1.5, label="P counts")
     axes.axvline(part.rmse, color=style.GREY, linewidth=0.8, label="RMSE")
     if part.p_says == part.p_says:
         axes.axvline(part.p_says, color=style.VERMILION, linestyle="--", linewidth=0.8, label="P says")
