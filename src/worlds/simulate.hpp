@@ -2,7 +2,6 @@
 // The interface between the engine and its targets: the same source, compiled once for each instruction set.
 
 #include <credence/detail/batch.hpp>
-#include "worlds/explore/problem.hpp"
 #include "worlds/landmarks/problem.hpp"
 #include "slam/trial/problem.hpp"
 
@@ -11,7 +10,10 @@
 
 namespace credence {
 
-struct OwnView;  // worlds/own/lanes/view.hpp, which the targets of the other worlds do not read
+// What the targets of the other worlds do not read: worlds/own/lanes/view.hpp, worlds/explore/problem.hpp.
+struct OwnView;
+struct ExploreView;
+struct ExploreArm;
 
 /// Simulates a batch of an arm. The same bits from every target.
 using SimulateFunction = void (*)(const ProblemView&, const Arm&, const Batch&);

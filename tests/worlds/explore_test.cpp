@@ -249,7 +249,7 @@ TEST_CASE("explore: the control chosen is the least of the costs, at hard parame
             ExplorePlanner planner(view, informed, work.belief, work.truth, layout, k + 1, work);
             double least = infinity, most = 0, taken = infinity;
             std::vector<std::pair<Control, double>> priced;
-            planner.choose_plainly([&](int i, double cost, bool allowed) {
+            planner.choose_plainly(0, [&](int i, double cost, bool allowed) {
                 if (!allowed) return;
                 least = std::fmin(least, cost), most = std::fmax(most, absolute(cost));
                 priced.push_back({view.control.candidates[i], cost});

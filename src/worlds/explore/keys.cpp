@@ -128,7 +128,7 @@ void check_walls(const ExploreSettings& s) {
 }
 
 void check_grid(const ExploreSettings& s) {
-    const Grid grid = grid_of(s);
+    const CellGrid grid = grid_of(s);
     if (const std::int64_t cells = std::int64_t{grid.columns} * grid.rows; cells > largest_cell_count)
         throw invalid_value("map.cell", to_text(s.cell), "map.box has " + std::to_string(cells) + " such cells",
                             "Give a larger cell, for at most " + std::to_string(largest_cell_count));

@@ -24,6 +24,8 @@ template <class Real>
 struct ExploreState {
     using State = ExploreLayout;
     PlannerWorkspace<State, Real> planner;
+    Belief<Real, State::capacity> of_one;         ///< of the trial that is planned for, in all lanes
+    MeasurementSpace<State, Real> space_of_one;
     Mask<Real> mapped[State::feature_capacity];  ///< whether a sighting, or the start, has given the landmark its place
     Mask<Real>* viewed = nullptr;                ///< [cells]
     int *queue = nullptr, *from = nullptr;       ///< [cells] of a search through the grid
@@ -74,7 +76,8 @@ CREDENCE_FLAT Real trace_in_measurement_space(const MeasurementSpace<ExploreLayo
 }
 
 /// The candidate of least cost among those that no wall ends: by the belief about the state, or, `informed`, about the
-/// truth. The robot stays where no candidate is left.
+/// truth. The robot stays where no candidate is left. Lanes hold the trials of a pack until the measurement space is
+/// entered; then, one trial after the other, its candidates, which see much the same, as trials do not.
 template <class Real, int capacity, int features>
 class ExplorePlanner {
     using State = ExploreLayout;
@@ -84,41 +87,51 @@ public:
                    const Truth<Real, features>& truth, const State& layout, int k, ExploreState<Real>& work)
         : problem_(problem), informed_(informed), belief_(belief), truth_(truth), layout_(layout), k_(k), work_(work) {}
 
-    /// Calls costs(i, cost, allowed) with every candidate's.
+    /// Calls costs(i, cost, allowed) with the candidates' of every trial.
     template <class Costs>
     Command<Real> choose(const Costs& costs) {
-        const ControlParameters& control = problem_.control;
         auto& planner = work_.planner;
-        if (!is_trace(control.criterion)) return choose_plainly(costs).command;
-        prepare_still(belief_, problem_.filter, layout_, k_, planner.still);
-        look_from_truth();
-        enter_measurement_space(planner.still, problem_.filter, layout_, control.weights, planner.space);
-        const Choice<Real> fast = least_cost(
-            [&](const Command<Real>&, const Vector2<Real>& u, const auto& sees) {
-                return trace_in_measurement_space(planner.space, u, problem_, layout_, sees, planner.elimination);
-            },
-            costs);
-        const Planning<State, Real> given{control, problem_.filter, problem_.sensor, layout_, planner};
-        const Mask<Real> unsure =
-            negated(lost_to_rounding(given, planner.space.prior.constant, 0) <= Real(most_lost) * least_);
-        return any(unsure) ? chosen(unsure, choose_plainly(costs), fast).command : fast.command;
+        const bool fast = is_trace(problem_.control.criterion);
+        Real lost(__builtin_inf());
+        if (fast) {
+            prepare_still(belief_, problem_.filter, layout_, k_, planner.still);
+            look_from_truth();
+            enter_measurement_space(planner.still, problem_.filter, layout_, problem_.control.weights, planner.space);
+            const Planning<State, Real> given{problem_.control, problem_.filter, problem_.sensor, layout_, planner};
+            lost = lost_to_rounding(given, planner.space.prior.constant, 0);
+        }
+        Control controls[lanes<Real>];
+        for (int lane = 0; lane < lanes<Real>; ++lane) {
+            Choice<double> choice;
+            double least = 0;
+            if (fast) choice = choose_in_space(lane, costs, least);
+            if (!(lane_of(lost, lane) <= most_lost * least)) choice = choose_plainly(lane, costs);
+            controls[lane] = {choice.command.turn, {choice.command.move.x, choice.command.move.y}};
+        }
+        return in_lanes_of(controls, lanes<Real>);
     }
 
-    /// The same by the covariance after the update itself: slow, and the oracle of the fast form.
+    /// The choice in one lane by the covariance after the update itself: slow, and the oracle of the fast form.
     template <class Costs>
-    Choice<Real> choose_plainly(const Costs& costs) {
+    Choice<double> choose_plainly(int lane, const Costs& costs) {
         auto& planner = work_.planner;
         prepare_candidates(belief_, problem_.filter, layout_, k_, planner.still);
         look_from_truth();
-        Real of_absent(0);
+        auto& one = work_.of_one;
+        take_lane(lane, planner.still.mean, layout_.size(), one.mean);
+        for (int i = 0; i < layout_.size(); ++i)
+            take_lane(lane, planner.still.covariance.entry[i] + i, layout_.size() - i, one.covariance.entry[i] + i);
+        double of_absent = 0;
         for (int j = 0; problem_.control.criterion == Criterion::log_det && j < layout_.features(); ++j)
-            of_absent = of_absent + select(work_.present(problem_, j), Real(0), Real(2) * log(Real(absent_variance)));
+            if (!is_present(j, lane)) of_absent += 2 * log(absent_variance);
+        double least = 0;
         return least_cost(
+            lane,
             [&](const Command<Real>& command, const Vector2<Real>&, const auto& sees) {
-                expect(planner.still, command, problem_.filter, problem_.sensor, layout_, sees, planner.next);
-                return cost_of(planner.next.covariance, problem_.control, layout_) - of_absent;
+                expect(one, command, problem_.filter, problem_.sensor, layout_, sees, planner.next);
+                return cost_of(planner.next.covariance, problem_.control, layout_) - Real(of_absent);
             },
-            costs);
+            costs, least);
     }
 
 private:
@@ -134,38 +147,93 @@ private:
         for (int j = 0; j < layout_.features(); ++j) set(State::feature(j), truth_.feature[j]);
     }
 
-    /// Offers each candidate at `cost_of(command, u, sees)`, less what its new cells are worth.
+    /// One lane's numbers in all lanes. `from`, `to` [count] of Reals, or of what consists of them.
+    template <class Numbers>
+    static void take_lane(int lane, const Numbers* from, int count, Numbers* to) {
+        const Real* source = reinterpret_cast<const Real*>(from);
+        Real* target = reinterpret_cast<Real*>(to);
+        const int reals = count * static_cast<int>(sizeof(Numbers) / sizeof(Real));
+        for (int i = 0; i < reals; ++i) target[i] = Real(lane_of(source[i], lane));
+    }
+
+    /// The controls [count], one in each lane; in further lanes the first.
+    static Command<Real> in_lanes_of(const Control* controls, int count) {
+        double turn[lanes<Real>], x[lanes<Real>], y[lanes<Real>];
+        for (int i = 0; i < lanes<Real>; ++i) {
+            const Control& own = controls[i < count ? i : 0];
+            turn[i] = own.turn, x[i] = own.move.x, y[i] = own.move.y;
+        }
+        return {load<Real>(turn), {load<Real>(x), load<Real>(y)}};
+    }
+
+    bool is_present(int j, int lane) const { return lane_bits(work_.present(problem_, j)) >> lane & 1; }
+
+    template <class Costs>
+    Choice<double> choose_in_space(int lane, const Costs& costs, double& least) {
+        const auto& all = work_.planner.space;
+        auto& one = work_.space_of_one;
+        const int M = layout_.features();
+        one.weights = all.weights;
+        take_lane(lane, &all.position, 1, &one.position);
+        take_lane(lane, &all.prior, 1, &one.prior);
+        take_lane(lane, all.feature, M, one.feature);
+        take_lane(lane, all.w, M, one.w);
+        take_lane(lane, all.x, M, one.x);
+        take_lane(lane, all.y, M, one.y);
+        for (int j = 0; j < M; ++j) {
+            take_lane(lane, all.A[j] + j, M - j, one.A[j] + j);
+            take_lane(lane, all.G[j] + j, M - j, one.G[j] + j);
+        }
+        take_lane(lane, work_.planner.still.mean, layout_.size(), work_.of_one.mean);
+        return least_cost(
+            lane,
+            [&](const Command<Real>&, const Vector2<Real>& u, const auto& sees) {
+                return trace_in_measurement_space(one, u, problem_, layout_, sees, work_.planner.elimination);
+            },
+            costs, least);
+    }
+
+    /// Offers each candidate at `cost_of(command, u, sees)`, less what its new cells are worth, from the mean in
+    /// `of_one`. `least`: without that worth.
     template <class Cost, class Costs>
-    Choice<Real> least_cost(const Cost& cost_of, const Costs& costs) {
+    Choice<double> least_cost(int lane, const Cost& cost_of, const Costs& costs, double& least) {
         const ControlParameters& control = problem_.control;
-        const Real* mean = work_.planner.still.mean;
+        const Real* mean = work_.of_one.mean;
         const Rotation<Real> heading = rotation(mean[State::heading]);
         const Vector2<Real> here = point_at(mean, State::position);
-        Choice<Real> choice = no_choice<Real>(control);
-        least_ = without_limit<Real>();
+        const Mask<Real> all_of_it = all_lanes<Real>(), none = negated(all_of_it);
+        Choice<double> choice = no_choice<double>(control);
         if (problem_.coverage > 0) choice.scale = CostScale::logarithmic;  // costs can be negative
-        for (int i = 0; i < control.candidate_count; ++i) {
-            const Command<Real> command = command_from<Real>(control.candidates[i]);
+        least = without_limit<double>();
+        for (int first = 0; first < control.candidate_count; first += lanes<Real>) {
+            const int left = control.candidate_count - first, count = left < lanes<Real> ? left : lanes<Real>;
+            const Command<Real> command = in_lanes_of(control.candidates + first, count);
             const Vector2<Real> u = rotate(heading, command.move), there = here + u;
-            Mask<Real> allowed = all_lanes<Real>();
+            Mask<Real> allowed = all_of_it;
             for (int w = 0; w < problem_.wall_count && any(allowed); ++w)
                 allowed = both(allowed, negated(free_share(problem_.walls[w], problem_.radius, here, u) < Real(1)));
             if (!any(allowed)) continue;
             const Rotation<Real> turned = rotation(mean[State::heading] + command.turn);
             const auto sees = [&](int j, const Real& squared) {
-                const Mask<Real> seen = both(work_.present(problem_, j), in_range(problem_.sensor, squared));
+                if (!is_present(j, lane)) return none;
+                const Mask<Real> seen = both(allowed, in_range(problem_.sensor, squared));
                 return any(seen) ? both(seen, in_sight(problem_, there, turned,
-                                                      point_at(mean, State::feature(j)) - there, squared))
+                                                       point_at(mean, State::feature(j)) - there, squared))
                                  : seen;
             };
-            Real cost = cost_of(command, u, sees);
-            least_ = select(both(allowed, cost < least_), cost, least_);
+            const Real own = cost_of(command, u, sees);
+            Real cost = own;
             if (problem_.coverage > 0)
-                each_new_cell(problem_, there, turned, work_.viewed, [&](int, Mask<Real> fresh) {
-                    cost = cost - select(fresh, Real(problem_.coverage), Real(0));
-                });
-            choice.offer(command, cost, allowed);
-            costs(i, cost, allowed);
+                each_new_cell(
+                    problem_, there, turned,
+                    [&](int i) { return lane_bits(work_.viewed[i]) >> lane & 1 ? none : allowed; },
+                    [&](int, Mask<Real> fresh) { cost = cost - select(fresh, Real(problem_.coverage), Real(0)); });
+            for (int i = 0; i < count; ++i) {
+                const bool is_allowed = lane_bits(allowed) >> i & 1;
+                choice.offer(command_from<double>(control.candidates[first + i]), lane_of(cost, i), is_allowed);
+                if (is_allowed) least = smaller(lane_of(own, i), least);
+                costs(first + i, lane_of(cost, i), is_allowed);
+            }
         }
         return choice;
     }
@@ -177,11 +245,10 @@ private:
     const State& layout_;
     int k_;
     ExploreState<Real>& work_;
-    Real least_{};  ///< cost of an allowed candidate, before what its cells are worth
 };
 
 /// The cell that a place is in, or the nearest one.
-inline int cell_at(const Grid& grid, double x, double y) {
+inline int cell_at(const CellGrid& grid, double x, double y) {
     const auto index = [&](double along, int count) {
         const double cells = along / grid.cell;
         return !(cells > 0) ? 0 : cells < count ? static_cast<int>(cells) : count - 1;
@@ -192,7 +259,7 @@ inline int cell_at(const Grid& grid, double x, double y) {
 /// The first cell on a shortest way through the grid from cell `start` to one that was not in view in that lane; -1 if
 /// none is reached. Of equal ways the first one to be found, neighbours taken to the east, north, west and south.
 template <class Real>
-int towards_unviewed(const Grid& grid, int start, int lane, ExploreState<Real>& work) {
+int towards_unviewed(const CellGrid& grid, int start, int lane, ExploreState<Real>& work) {
     for (int i = 0; i < grid.count(); ++i) work.from[i] = -1;
     work.from[start] = start;
     work.queue[0] = start;

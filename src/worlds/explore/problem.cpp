@@ -69,7 +69,7 @@ double distance(const WallLine& wall, const Point& place) {
     return std::sqrt(squared_norm(add_scaled(start, -reached, along)));
 }
 
-Grid grid_of(const ExploreSettings& settings) {
+CellGrid grid_of(const ExploreSettings& settings) {
     const Point &low = settings.box[0], &high = settings.box[1];
     const auto cells = [&](double side) {  // a side of a whole number of cells has them, whatever the rounding
         return static_cast<int>(std::ceil(std::min(side / settings.cell, 1.0 * largest_cell_count) - 1e-9));
@@ -117,7 +117,7 @@ void ExploreProblem::fill_growth(const std::vector<ComponentGroup>& groups) {
 
 void ExploreProblem::fill_grid() {
     view_.grid = grid_of(settings_);
-    const Grid& grid = view_.grid;
+    const CellGrid& grid = view_.grid;
     const auto clear = [&](const Point& from, const Point& to) {
         return std::ranges::all_of(walls_, [&](const WallLine& wall) {
             return distance(wall, from) >= settings_.radius && distance(wall, to) >= settings_.radius &&

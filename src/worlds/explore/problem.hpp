@@ -7,7 +7,7 @@
 namespace credence {
 
 /// The grid of cells, row by row from its lower left corner.
-struct Grid {
+struct CellGrid {
     Point corner;
     double cell = 1;
     int columns = 0, rows = 0;
@@ -35,7 +35,7 @@ struct ExploreView : ProblemView {
     LandmarkMap map = LandmarkMap::none;
     double prior = 0;
     MotionNoise motion_noise = MotionNoise::motion;
-    Grid grid;
+    CellGrid grid;
     double coverage = 0;       ///< what a cell is worth
     int chart_series = -1;     ///< the NEES of the whole state in the invariant chart; -1: none
     int own_series = 0;        ///< the first of the series that only this world has
@@ -82,6 +82,6 @@ WallLine line_of(const WallSegment& wall);
 /// The distance of a point from a wall.
 double distance(const WallLine& wall, const Point& place);
 /// Columns and rows of the grid: as many whole cells as cover the box.
-Grid grid_of(const ExploreSettings& settings);
+CellGrid grid_of(const ExploreSettings& settings);
 
 }  // namespace credence

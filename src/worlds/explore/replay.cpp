@@ -17,7 +17,7 @@ struct ExploreVariables {
     std::size_t in_state, cell_viewed, cost;
 };
 
-ExploreVariables add_explore_variables(Trajectory& trajectory, const ExploreSettings& settings, const Grid& grid,
+ExploreVariables add_explore_variables(Trajectory& trajectory, const ExploreSettings& settings, const CellGrid& grid,
                                        bool plans) {
     const auto dimension = [&](const char* name, const char* what, int size) {
         trajectory.dimensions.push_back({name, what, static_cast<std::size_t>(size)});

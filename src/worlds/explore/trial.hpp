@@ -187,9 +187,8 @@ void run_trial(const ExploreView& problem, Explorer controller, const Noise& noi
             case Explorer::greedy:
             case Explorer::informed: {
                 ExplorePlanner planner(problem, controller == Explorer::informed, belief, truth, layout, k, work);
-                command = planner.choose([&](int i, const Real& cost, Mask<Real> allowed) {
-                    observer.priced(k, i, cost, allowed);
-                });
+                command = planner.choose(
+                    [&](int i, double cost, bool allowed) { observer.priced(k, i, cost, allowed); });
                 break;
             }
             default: command = command_from<Real>(problem.control.waypoints[k - 1]);

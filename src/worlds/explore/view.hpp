@@ -19,13 +19,13 @@ Mask<Real> in_sight(const ExploreView& problem, const Vector2<Real>& eye, const 
     return seen;
 }
 
-/// Calls visit(i, seen) for the cells that were not in view before in some lane and are now. `viewed` [cells].
-template <class Real, class Visit>
+/// Calls visit(i, seen) for the cells that are in sight in some lane in which open(i) is true.
+template <class Real, class Open, class Visit>
 void each_new_cell(const ExploreView& problem, const Vector2<Real>& eye, const Rotation<Real>& heading,
-                   const Mask<Real>* viewed, const Visit& visit) {
-    const Grid& grid = problem.grid;
+                   const Open& open, const Visit& visit) {
+    const CellGrid& grid = problem.grid;
     for (int i = 0; i < grid.count(); ++i) {
-        Mask<Real> fresh = negated(viewed[i]);
+        Mask<Real> fresh = open(i);
         if (!any(fresh)) continue;
         const Vector2<Real> way = broadcast<Real>(grid.centre(i)) - eye;
         const Real squared = squared_norm(way);
@@ -40,10 +40,12 @@ template <class Real>
 Real view_cells(const ExploreView& problem, const Vector2<Real>& eye, const Rotation<Real>& heading,
                 Mask<Real>* viewed) {
     Real count(0);
-    each_new_cell(problem, eye, heading, viewed, [&](int i, Mask<Real> fresh) {
-        viewed[i] = either(viewed[i], fresh);
-        count = count + select(fresh, Real(1), Real(0));
-    });
+    each_new_cell(
+        problem, eye, heading, [&](int i) { return negated(viewed[i]); },
+        [&](int i, Mask<Real> fresh) {
+            viewed[i] = either(viewed[i], fresh);
+            count = count + select(fresh, Real(1), Real(0));
+        });
     return count * Real(1.0 / problem.grid.count());
 }
 
