@@ -1,6 +1,7 @@
 // Innovations: their evidence, and the verdict on a record of them alone, which is whether they are correlated.
 
 #include "base/nan.hpp"
+#include "statistics/goodness.hpp"
 #include "statistics/whiteness.hpp"
 #include "verdict/evidence_parts.hpp"
 #include "verdict/judgement.hpp"
