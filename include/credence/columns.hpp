@@ -142,8 +142,8 @@ struct BudgetSettings {
 /// The steps from 0 on whose errors are kept, of `steps`.
 std::vector<int> kept_steps(KeptErrors kept, int steps);
 
-/// Columns, with those of the kept errors before the last two: `error_x` of the last step or `error_x_K` of step K of
-/// component x, all components of a step together; then `variance_x` likewise.
+/// Columns, with those of the kept errors before the last two: of each kept step in turn one for each component, called
+/// by it and, unless the last step alone is kept, by the step; then the variances likewise.
 std::vector<Column> with_errors(std::vector<Column> columns, const std::vector<Component>& components, int steps,
                                 const BudgetSettings& budget);
 

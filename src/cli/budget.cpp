@@ -18,8 +18,8 @@ const Command& budget_command() {
         "budget",
         "SCENARIO.ini... [options] | FILE.h5 [--of GROUP] [options]",
         "why an error is what it is: by its sources, beside what P counts for each",
-        "\nEach source of noise is drawn anew with all others held. The worlds that this takes are run in memory; as a\n"
-        "study in FILE.h5, with shards and --resume, by `" +
+        "\nEach source of noise is drawn anew with all others held. The worlds that this takes are run in memory;\n"
+        "as a study in FILE.h5, with shards and --resume, by `" +
             program_name() + " run SCENARIO.ini --budget last -o FILE.h5`.\n",
         {{"of", "GROUP", "the component, or group of one unit, that the text is of (default: the first)"},
          {"at", "WHEN", "errors at the last step, or their mean over the steps", false, {"last", "mean"}},

@@ -11,8 +11,8 @@
 
 namespace credence {
 
-/// A, which is the scenario itself but for its columns; B; C_s and D_s of each source. Throws InputError where its world
-/// names no sources, or it is one of these scenarios already.
+/// A, which is the scenario itself but for its columns; B; C_s and D_s of each source. Throws InputError where its
+/// world names no sources, or it is one of these scenarios already.
 std::vector<Scenario> budget_scenarios(const Scenario& scenario, KeptErrors kept);
 
 /// Throws InputError where there is no component, nor group of one unit, of that name.

@@ -22,8 +22,8 @@ struct CountedSource {
 inline namespace CREDENCE_TARGET {
 
 /// An estimator of double precision that propagates the parts of its P beside it. Prediction and initialisation are
-/// linear in P and the variances, so that the estimator's own are applied to each part; of the update, which is not, the
-/// gains are heard of by the Update that it fills.
+/// linear in P and the variances, so that the estimator's own are applied to each part. The update is not: its gains
+/// are heard of by the Update that it fills.
 template <class Estimating, class Layout>
 class Attributed : public Estimating {
 public:
