@@ -123,6 +123,7 @@ std::uint32_t parse_sources(const std::string& value, const std::vector<DrawSour
     for (const DrawSource& source : sources) names.push_back(source.name);
     for (const std::string& part : list_parts("draws.other", value))
         bits |= sources[parse_choice("draws.other", part, names)].bits;
+    if (bits == 0) throw invalid_value("draws.other", value, "it is empty", "Give none, or some of " + joined(names));
     return bits;
 }
 
