@@ -105,11 +105,11 @@ struct PolygonPlanner : PolygonModel {
             std::array<Mask<Real>, features> mask;
             std::array<Real, features> variances;
             for (std::size_t j = 0; j < features; ++j) {
-                unsigned lanes_that_see = 0;
+                Real sees;
                 for (int lane = 0; lane < lanes<Real>; ++lane)
-                    lanes_that_see |= (sights[static_cast<std::size_t>(lane_of(index, lane))] >> j & 1) << lane;
-                mask[j] = mask_of_bits<Real>(lanes_that_see);
-                if (lanes_that_see == 0) continue;
+                    set_lane(sees, lane, sights[static_cast<std::size_t>(lane_of(index, lane))] >> j & 1);
+                mask[j] = sees > Real(0);
+                if (!any(mask[j])) continue;
                 const Vector<Real> delta = then.col(static_cast<Eigen::Index>(j)) - place;
                 rows[j] << swing(rotation, delta), -Square<Real>::Identity();
                 const Real sigma = sigma_of(s, credence::sqrt(Real(delta.squaredNorm())), constant);

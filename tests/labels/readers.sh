@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Label readers: credence's files as read by other programs, and the scripts of analysis/, in the languages that run
 # them; the claims of docs/planning.md and docs/theory/planning.md, of their tables;
-# the draws as docs/model.md defines them; and the columns of the filter in numpy, and in JAX where it is installed,
+# the draws as docs/model.md defines them; the world polygon in numpy and its study, beside another program's, where its
+# runs are there; and the columns of the filter in numpy, and in JAX where it is installed,
 # beside credence's.
 set -euo pipefail
 /usr/bin/python3 -c 'import h5py, numpy, scipy' 2>/dev/null || { echo "SKIPPED: python3-h5py or python3-scipy is not installed"; exit 0; }
@@ -23,8 +24,16 @@ for wrong in 's/it ends 11 % higher/it ends 12 % higher/' 's/^- \*\*Where it har
     exit 1
   fi
 done
+/usr/bin/python3 experiments/claims.py experiments/worlds/polygon_claims.py docs/polygon.md experiments/worlds/polygon.csv
 /usr/bin/python3 tests/oracle/draws_oracle.py build/credence docs/model.md
 /usr/bin/python3 tests/oracle/explore_oracle.py build/credence
+successor=../shared/data/successor.h5
+if [ -f "$successor" ]; then
+  /usr/bin/python3 tests/oracle/polygon_oracle.py "$successor" >"$records/polygon" || { cat "$records/polygon"; exit 1; }
+  /usr/bin/python3 experiments/worlds/compare/successor.py experiments/worlds/polygon.csv ../shared/successor.md
+else
+  echo "the world polygon was not compared with another program's runs: $successor is not there"
+fi
 /usr/bin/python3 bench/peers/peers.py --credence build/credence --check
 /usr/bin/python3 tests/reference/make_records.py --big "$records"
 /usr/bin/python3 tests/judge_records.py build/credence "$records"

@@ -35,8 +35,8 @@ Vector2<Real> in_lanes(const Vector2<double>& point) {
     return {Real(point.x), Real(point.y)};
 }
 
-/// Whether the way from a to b crosses one of the walls [count]. Their ends belong to them, so that nothing passes where
-/// two of them meet. A way that begins or ends on a wall's line does not cross that wall.
+/// Whether the way from a to b crosses one of the walls [count]. Their ends belong to them, so that nothing passes
+/// where two of them meet. A way that begins or ends on a wall's line does not cross that wall.
 template <class Real>
 Mask<Real> segment_blocked(const Vector2<Real>& a, const Vector2<Real>& b, const Wall* walls, int count) {
     Mask<Real> blocked = negated(all_lanes<Real>());
