@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The study of docs/polygon.md: the world `polygon` as published and mended, with constant and ranged noise, 1,000
-# trials each or as many as the first argument says; and on its paths each flaw mended by itself. Prints polygon.csv,
-# means with 95 % intervals. GALLERY is the program, where it is built already.
+# The study of docs/polygon.md, in a checkout: the world `polygon` as published and mended, with constant and ranged
+# noise, 1,000 trials each or as many as the first argument says; and on its paths some flaws mended by themselves.
+# Prints polygon.csv, means with 95 % intervals. GALLERY is the program, where it is built already.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 if [ -z "${GALLERY:-}" ]; then
