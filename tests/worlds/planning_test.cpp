@@ -7,33 +7,27 @@
 #include <credence/planning.hpp>
 
 #include <cmath>
-#include <numeric>
 #include <random>
 
 namespace credence::test::planning_test {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 using Point = Eigen::Vector3d;
 
 /// An octahedron, and a face more, of either orientation.
 constexpr Mesh<9> mesh{{
     {0, 1, 2}, {0, 3, 2}, {0, 3, 4}, {0, 1, 4}, {5, 1, 2}, {5, 2, 3}, {5, 3, 4}, {5, 4, 1}, {0, 1, 6}}};
 
-class Random {
-public:
+struct Random {
     explicit Random(unsigned seed) : random_(seed) {}
-    double normal() { return normal_(random_); }
     template <class Matrix>
     Matrix matrix() {
         Matrix all;
         for (Eigen::Index i = 0; i < all.size(); ++i)
-            for (int lane = 0; lane < lanes<typename Matrix::Scalar>; ++lane) set_lane(all(i), lane, normal());
+            for (int lane = 0; lane < lanes<typename Matrix::Scalar>; ++lane) set_lane(all(i), lane, normal_(random_));
         return all;
     }
-
-private:
     std::mt19937 random_;
     std::normal_distribution<double> normal_;
 };
@@ -43,8 +37,6 @@ template <class Matrix>
 auto of_lane(const Matrix& matrix, int lane) {
     return matrix.unaryExpr([lane](const auto& number) { return lane_of(number, lane); }).eval();
 }
-
-Point point(Random& random) { return random.matrix<Point>(); }
 
 /// By barycentric coordinates of the place at which the line from a to b goes through the triangle's plane.
 bool blocked_plainly(const Point& a, const Point& b, const Point* corners) {
@@ -128,7 +120,6 @@ void check_foresight(unsigned seed) {
     const Real given = foresight.trace(plan.F, plan.Q, plan.rows.data(), plan.variances.data(), plan.seen.data());
     for (int lane = 0; lane < lanes<Real>; ++lane)
         CHECK(lane_of(given, lane) == Approx(plan.trace(lane)).epsilon(1e-10));  // condition numbers are below 1e4
-    // P of each lane's trial gives the same bits as that of one.
     const Foresight<Real, p, d, count> of_trials(plan.P.template cast<Real>(), (plan.P * plan.P).template cast<Real>());
     const Real again = of_trials.trace(plan.F, plan.Q, plan.rows.data(), plan.variances.data(), plan.seen.data());
     for (int lane = 0; lane < lanes<Real>; ++lane)
@@ -156,7 +147,7 @@ TEST_CASE("planning: the least cost wins, of equal ones the last that is allowed
         double costs[20][4];
         unsigned allowed[20];
         for (int i = 0; i < count; ++i) {
-            for (double& cost : costs[i]) cost = random() % 8 == 0 ? nan : static_cast<double>(random() % 6);
+            for (double& cost : costs[i]) cost = random() % 8 == 0 ? std::nan("") : static_cast<double>(random() % 6);
             allowed[i] = random() % 16 & random() % 16;
         }
         const auto best = least(
@@ -226,7 +217,7 @@ TEST_CASE("planning: a mesh hides what is behind its triangles, and is as near a
 TEST_CASE("planning: a rotation of Euler angles is Eigen's, with its derivatives") {
     Random random(5);
     for (int sample = 0; sample < 50; ++sample) {
-        const Point angles = point(random);
+        const Point angles = random.matrix<Point>();
         const EulerRotation<double> given(angles);
         const Eigen::Matrix3d R = (Eigen::AngleAxisd(angles(2), Point::UnitZ()) *
                                    Eigen::AngleAxisd(angles(1), Point::UnitY()) *
