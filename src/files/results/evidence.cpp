@@ -88,7 +88,8 @@ void read_cells(const Handle& group, const ScenarioResults& results, ArmResults&
             left -= *count;
         }
         const bool in_part = left > 0 && !results.all_series.front().rows.empty();  // some of a state that grows
-        if (left != 0 && !in_part) throw Error(hdf5::place_of(group, name), "its counts do not add up to the counted trials");
+        if (left != 0 && !in_part)
+            throw Error(hdf5::place_of(group, name), "its counts do not add up to the counted trials");
     }
 }
 

@@ -17,8 +17,8 @@
 //       correction, the NIS of the first linearisation, its rows, and whether every S was positive definite.
 //   void initialise(Belief&, const FilterParameters&, const Layout&, int j, const Sighting<Real>&, const Truth&)
 //       called after the update: adds feature j to the belief in the lanes in which it is seen (for the first time),
-//       replacing its earlier estimate. Only worlds in which features are not all known from the start, and that have a heading, call
-//       it.
+//       replacing its earlier estimate. Only worlds in which features are not all known from the start, and that have a
+//       heading, call it.
 //
 // Dimensions, units and frames are those of filter.hpp and update.hpp. The truth is that of pose k: an estimator that
 // uses it cannot be implemented on a robot, and its documentation must say so. An estimator must not draw random
