@@ -26,7 +26,7 @@ class Record:
     """Errors and covariances of a filter in many independent runs.
 
     `error` and `covariance` are enough for most filters. Arrays are anything that NumPy takes (xarray, pandas, lists);
-    docs/theory/python.md says what becomes of masks, units and names of dimensions. Doubles and singles of any strides
+    python/tests/odd_inputs.csv says what becomes of masks, units and names. Doubles and singles of any strides
     are read in place, a part at a time; other types are converted first. A single run may leave out the first
     dimension, and a list may hold runs of different lengths.
 

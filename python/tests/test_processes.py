@@ -1,7 +1,8 @@
-"""What processes do around the package: folders, forks, signals, threads and ends, as docs/theory/python.md says."""
+"""What processes do around the package: folders, forks, signals, threads and ends, as odd_processes.csv says."""
 
 from __future__ import annotations
 
+import csv
 import io
 import os
 import pathlib
@@ -16,8 +17,7 @@ from conftest import SCENARIO, python, refused
 
 import credence
 
-PAGE = pathlib.Path(__file__).parents[2] / "docs" / "theory" / "python.md"
-HEADING = "## What odd processes get"
+TABLE = pathlib.Path(__file__).with_name("odd_processes.csv")
 
 # What happens in the middle of a call finds `long_judge` at work on most machines, and `endless_run` on all.
 PREAMBLE = f"""
@@ -244,10 +244,9 @@ CASES = {
 
 
 def rows():
-    """{what: what it gets} of the page's table."""
-    table = PAGE.read_text(encoding="utf-8").split(HEADING)[1].split("\n## ")[0]
-    cells = [line.strip("|").split("|") for line in table.splitlines() if line.startswith("|")]
-    return {first.strip(): second.strip() for first, second in cells[2:]}
+    """{what: what it gets} of the table."""
+    with TABLE.open(encoding="utf-8", newline="") as file:
+        return dict(list(csv.reader(file))[1:])
 
 
 def test_the_table_of_odd_processes_has_the_tested_cases():

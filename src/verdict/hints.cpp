@@ -79,7 +79,8 @@ std::string few_of(const Evidence& evidence, const Limits& limits) {
     if (!(share_of_factor(state) < 0.3)) return {};
     return formatted("NEES is below its median in %.0f %% of the steps, as it should be, and few steps carry what is "
                      "too large: outliers%s? The worst are named",
-                     100 * state.coverage.front().over_steps, evidence.trials == 1 ? "" : ", or a few trials that are wrong");
+                     100 * state.coverage.front().over_steps,
+                     evidence.trials == 1 ? "" : ", or a few trials that are wrong");
 }
 
 /// All directions are off by nearly one factor: it is beyond three margins, and they differ little, and less than it.

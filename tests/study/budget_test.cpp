@@ -25,10 +25,6 @@ Study study_with(const std::vector<Scenario>& scenarios, std::int64_t trials, in
     return study;
 }
 
-const BudgetPart& part(const ArmBudget& budget, const std::string& name) {
-    return *std::ranges::find(budget.parts, name, &BudgetPart::name);
-}
-
 std::vector<double> numbers_of(const std::vector<ArmBudget>& budgets) {
     std::vector<double> numbers;
     for (const ArmBudget& budget : budgets)
