@@ -18,6 +18,7 @@ struct Attitude {
         double gyro_factor = 1, walk_factor = 1, direction_factor = 1;
     };
     static constexpr const char* name = "attitude";
+    static constexpr const char* sources[] = {"start", "gyro", "walk", "direction"};  // of Source in run
     static void keys(credence::OwnKeys<Settings>& keys) {
         keys.real("motion.period", &Settings::period, 1e-4, 10, "T, time between samples (s)");
         keys.real("motion.rate", &Settings::rate, 0, 10, "largest rate about each axis (rad/s)");

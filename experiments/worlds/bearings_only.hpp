@@ -19,6 +19,7 @@ struct BearingsOnly {
         Chart chart = Chart::polar;
     };
     static constexpr const char* name = "bearings_only";
+    static constexpr const char* sources[] = {"rates", "place", "acceleration", "sensor"};  // of Source in run
     static void keys(credence::OwnKeys<Settings>& keys) {
         keys.real("motion.period", &Settings::period, 1e-3, 1e4, "T, time between bearings (s)");
         keys.real("motion.range", &Settings::range, 1, 1e6, "first range on average, north (m)");

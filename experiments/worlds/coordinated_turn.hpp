@@ -20,6 +20,7 @@ struct CoordinatedTurn {
         double acceleration_factor = 1, rate_factor = 1, range_factor = 1, bearing_factor = 1;
     };
     static constexpr const char* name = "coordinated_turn";
+    static constexpr const char* sources[] = {"start", "acceleration", "rate", "sensor"};  // of Source in run
     static void keys(credence::OwnKeys<Settings>& keys) {
         keys.real("motion.period", &Settings::period, 1e-3, 1e3, "T, time between steps (s)");
         keys.real("motion.rate", &Settings::rate, -3, 3, "of the first turn, on average (rad/s)");

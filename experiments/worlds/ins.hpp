@@ -16,6 +16,7 @@ struct Ins {
         double tilt = 0.02, heading = 0.5, gyro_bias = 2e-3, accelerometer_bias = 0.05;
     };
     static constexpr const char* name = "ins";
+    static constexpr const char* sources[] = {"start", "imu", "walk", "gps"};  // of Source in run
     static void keys(credence::OwnKeys<Settings>& keys) {
         keys.integer("sensor.rate", &Settings::rate, 1, 10000, "inertial samples in a second");
         keys.real("sensor.gps", &Settings::sigma_gps, 1e-6, 1e3, "sigma of a position, each axis (m)");

@@ -13,6 +13,7 @@
 
 struct Polygon : PolygonPlanner {
     static constexpr const char* name = "polygon";
+    static constexpr const char* sources[] = {"robot", "walk", "breath", "sight", "edges"};  // of Source in run
     static std::vector<credence::Component> components(const Settings&) {
         std::vector<credence::Component> all{{"roll", "rad"}, {"pitch", "rad"}, {"yaw", "rad"}};
         for (const char* axis : {"x", "y", "z"}) all.push_back({std::string("p_") + axis, "cm"});

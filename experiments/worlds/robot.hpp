@@ -19,6 +19,7 @@ struct Robot {
         std::vector<double> x{15, -10, 0}, y{0, 20, 40};
     };
     static constexpr const char* name = "robot";
+    static constexpr const char* sources[] = {"start", "move", "sensor"};  // of Source in run
     static void keys(credence::OwnKeys<Settings>& keys) {
         keys.real("motion.speed", &Settings::speed, 0, 100, "way of a step (m)");
         keys.real("motion.turn", &Settings::turn, -3, 3, "turn of a step (rad)");

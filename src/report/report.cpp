@@ -1,13 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <credence/detail/worlds.hpp>
 #include <credence/error.hpp>
 #include <credence/report.hpp>
 #include <credence/text.hpp>
 #include <map>
 #include <tuple>
 
-#include "base/wording.hpp"
 #include "base/nan.hpp"
 #include "report/words.hpp"
 #include "statistics/bootstrap.hpp"
@@ -86,10 +84,10 @@ void hint_at_budget(Report& report) {
     });
     if (refuted == report.arms.end()) return;
     const Scenario& scenario = *std::ranges::find(report.scenarios, refuted->scenario, &Scenario::name);
-    const World* world = find_world(scenario.world);
-    if (world == nullptr || scenario.settings.empty() || world->sources(scenario).size() < 2) return;
-    refuted->consistency.hints.push_back(as_command({"budget", "SCENARIO.ini"}) +
-                                         " tells which source of noise its error is of, and what P counts for it");
+    // A program without this world says the same of it, and so does not ask whether it names its sources.
+    if (scenario.settings.empty() || scenario.world == "explore") return;
+    refuted->consistency.hints.push_back("the command `budget` tells which source of noise its error is of, and what "
+                                         "P counts for it");
 }
 
 }  // namespace
