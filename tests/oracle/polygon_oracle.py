@@ -1,10 +1,11 @@
 """The world `polygon` of experiments/worlds in numpy, plainly: all edges are rows, and the covariances of all
 candidates are computed whole. Its noise is given.
 
-    python3 polygon_oracle.py SUCCESSOR.h5
+    python3 polygon_oracle.py SUCCESSOR.h5 [WORD...]
 
-compares it with the runs of that file, which another program made on the same noise, and prints the largest difference
-and the seconds of each. The exit code is 1 where one differs by 1e-9 or more.
+compares it with the runs of that file, which another program made on the same noise, or with those that have one of
+these words (published, mended, constant, ranged, fixed, greedy, 101, 102), and prints the largest difference and the
+seconds of each. The exit code is 1 where one differs by 1e-9 or more.
 """
 
 import sys
@@ -238,7 +239,7 @@ def difference(given, expected):
 TIED = {("mended", "constant", "greedy", "102"): 41}
 
 
-def main(path):
+def main(path, *words):
     worst = 0
     with h5py.File(path) as file:
         for variant, tails in (("published", "truncated"), ("mended", "normal")):
@@ -246,6 +247,8 @@ def main(path):
             for noise in ("constant", "ranged"):
                 for arm in ("fixed", "greedy"):
                     for seed in ("101", "102"):
+                        if words and not {variant, noise, arm, seed} & set(words):
+                            continue
                         draws = {name: drawn[()] for name, drawn in file["noise"][tails][seed].items()}
                         expected = file["results"][variant][noise][arm][seed]
                         begin = time.process_time()
