@@ -195,8 +195,8 @@ def pose_in_degrees(log: Log) -> dict[str, Any]:
 
 
 def dropped(log: Log) -> Array:
-    P = log.P.copy()
-    P[..., :2, 2:] = P[..., 2:, :2] = 0
+    P, half = log.P.copy(), log.P.shape[-1] // 2
+    P[..., :half, half:] = P[..., half:, :half] = 0
     return P
 
 

@@ -9,14 +9,12 @@ process noise is smaller beside that of its measurement, and it is no unit of an
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 
 import causes
 import numpy as np
-from causes import DEGREES, Array, Fault, Filter, Log, scaled, with_error, with_P
+from causes import DEGREES, Fault, Filter, Log, scaled, with_error, with_P
 
 SCALE = 1000.0  # mm
-FLAT = slice(0, 3)
 EXCHANGED = [3, 4, 5, 0, 1, 2]
 
 
@@ -28,16 +26,6 @@ def target(random: np.random.Generator, runs: int, steps: int, of: Filter) -> Lo
     H, R = np.eye(3, 6), SCALE**2 * np.diag([0.5, 0.5, 2 * r])
     P0 = SCALE**2 * p0 * np.diag([0.5, 0.5, 0.5, 0.05, 0.05, 0.05])
     return causes.kalman(random, runs, steps, of, lambda x: F, lambda x: Q, H, R, P0, np.zeros(6))
-
-
-def dropped(log: Log) -> Array:
-    P = log.P.copy()
-    P[..., FLAT, 3:] = P[..., 3:, FLAT] = 0
-    return P
-
-
-def error_by(factors: Array) -> Callable[[Log], dict[str, object]]:
-    return with_error(lambda log: (log.estimate - log.truth) * factors)
 
 
 OF_ONE = np.where(np.arange(6) == 2, DEGREES, 1.0)
@@ -53,11 +41,12 @@ CHANGED = {
     "measurement a step late": causes.FAULTS["measurement a step late"],
     "P of the prediction": causes.FAULTS["P of the prediction"],
     "P in deg²": Fault(("squared degrees",), written=with_P(lambda log: scaled(log.P, np.full(6, DEGREES)))),
-    "errors in deg": Fault(("degrees",), written=error_by(np.full(6, DEGREES))),
-    "one of the errors in deg": Fault(("degrees",), written=error_by(OF_ONE)),
+    "errors in deg": causes.FAULTS["errors in deg"],
+    "one of the errors in deg": Fault(
+        ("degrees",), written=with_error(lambda log: (log.estimate - log.truth) * OF_ONE)),
     "sigma for variance": causes.FAULTS["sigma for variance"],
     "variance squared": causes.FAULTS["variance squared"],
-    "cross-covariance dropped": Fault(("dropped",), written=with_P(dropped)),
+    "cross-covariance dropped": causes.FAULTS["cross-covariance dropped"],
     "bias of 0.7 sigma": Fault(
         ("offset",),
         written=with_error(lambda log: log.estimate - log.truth + SCALE * np.array([0.5, 0, 0, 0, 0, 0]))),

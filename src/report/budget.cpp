@@ -47,18 +47,16 @@ std::string part_text(const BudgetPart& part, bool counts) {
     return text;
 }
 
-Json number_or_null(double number) { return std::isfinite(number) ? Json(number) : Json(); }
-
 Json part_json(const BudgetPart& part) {
     Json sources = Json::array();
     for (const Contribution& one : part.contributions)
         sources.push_back({{"source", one.source},
-                           {"alone", number_or_null(one.alone)},
+                           {"alone", one.alone},
                            {"alone_ci", interval_json(one.alone95)},
-                           {"share", number_or_null(one.share)},
+                           {"share", one.share},
                            {"with_others", one.with_others},
-                           {"p_counts", number_or_null(one.p_counts)},
-                           {"ratio", number_or_null(one.ratio)}});
+                           {"p_counts", one.p_counts},
+                           {"ratio", one.ratio}});
     return {{"of", part.name},
             {"unit", part.unit},
             {"sources", std::move(sources)},
@@ -67,8 +65,8 @@ Json part_json(const BudgetPart& part) {
             {"rss", part.rss},
             {"rmse", part.rmse},
             {"closes", part.closes},
-            {"p_says", number_or_null(part.p_says)},
-            {"ratio", number_or_null(part.ratio)}};
+            {"p_says", part.p_says},
+            {"ratio", part.ratio}};
 }
 
 }  // namespace

@@ -49,8 +49,7 @@ Real view_cells(const ExploreView& problem, const Vector2<Real>& eye, const Rota
     return count * Real(1.0 / problem.grid.count());
 }
 
-/// The robot's motion from pose k - 1 to k as the deformable world's, but a wall ends it. `noisy`: whether its noise is
-/// on the motion. Returns where a wall did.
+/// The robot's motion from pose k - 1 to k as the deformable world's, but a wall ends it. Returns where one did.
 template <class Layout, class Real, int capacity, class Draws>
 Mask<Real> move_among_walls(Truth<Real, capacity>& truth, const ExploreView& problem, const Command<Real>& command,
                             const Draws& draws) {
