@@ -31,7 +31,8 @@ const Command& budget_command() {
          {"quiet", "", "no progress"},
          format_option({"text", "json", "csv"}),
          output_option("write there, not to the standard output"),
-         overwrite_option()}};
+         overwrite_option()},
+        [](const Parsed& parsed) { return give(parsed, budgeted); }};
     return command;
 }
 
@@ -77,12 +78,6 @@ Rendering budgeted(const Parsed& parsed) {
     const Study study = is_stored ? study_in_file(parsed) : study_run(parsed);
     return [report = BudgetReport{budgets_of(study), study.root_seed, parsed.text("of").value_or("")}](
                const std::string& format) { return budget_in(report, format); };
-}
-
-int budget(const Parsed& parsed) {
-    const Rendering rendering = budgeted(parsed);
-    write_output(parsed, rendering(parsed.choice("format")));
-    return 0;
 }
 
 }  // namespace credence::cli

@@ -270,6 +270,12 @@ void write_output(const Parsed& parsed, const std::string& text) {
     else print(text);
 }
 
+int give(const Parsed& parsed, Rendering (*make)(const Parsed&)) {
+    const std::string format = parsed.choice("format");
+    write_output(parsed, make(parsed)(format));
+    return 0;
+}
+
 Option set_option() {
     return {"set", "section.key=value", "override a key of every scenario; repeatable, the last wins", true};
 }

@@ -3,7 +3,6 @@
 
 #include <credence/ini.hpp>
 #include <credence/report.hpp>
-#include <credence/detail/worlds.hpp>
 
 #include <functional>
 #include <map>
@@ -26,11 +25,14 @@ struct Option {
     std::string short_name() const { return name.size() == long_name().size() ? "" : name.substr(name.find(',') + 1); }
 };
 
-/// A subcommand as its help shows it.
+class Parsed;
+
+/// A subcommand: its help, and what it does.
 struct Command {
     std::string name, arguments, summary;
     std::string details;       ///< printed after the options
     std::vector<Option> options;
+    int (*work)(const Parsed&);  ///< runs it, and returns the exit code
 };
 
 /// The values of options by their long names; a switch has one, which is empty.
@@ -42,6 +44,7 @@ public:
     std::vector<std::string> arguments;               ///< the arguments that are not options
     Values values;
     const Command* command = nullptr;                 ///< the command they belong to
+    std::string line;                                 ///< the command line as given, quoted where a shell needs it
 
     bool has(const std::string& option) const { return values.count(option) > 0; }
     std::optional<std::string> text(const std::string& option) const;
@@ -122,8 +125,10 @@ int give_report(const Parsed& parsed, Reported (*make)(const Parsed&));
 using Rendering = std::function<std::string(const std::string& format)>;
 Rendering compared(const Parsed& parsed);
 Rendering budgeted(const Parsed& parsed);
+/// Writes what is made in the format that is asked for, and returns the exit code.
+int give(const Parsed& parsed, Rendering (*make)(const Parsed&));
 
-// The subcommands: their descriptions, and the functions that run them and return the exit code.
+// The subcommands.
 const Command& run_command();
 const Command& report_command();
 const Command& judge_command();
@@ -134,21 +139,11 @@ const Command& show_command();
 const Command& merge_command();
 const Command& watch_command();
 const Command& completion_command();
-int run(const Parsed& parsed, const std::string& command_line);
-int report(const Parsed& parsed);
-int judge(const Parsed& parsed);
-int compare(const Parsed& parsed);
-int budget(const Parsed& parsed);
-int replay(const Parsed& parsed, const std::string& command_line);
-int show(const Parsed& parsed);
-int merge(const Parsed& parsed, const std::string& command_line);
-int watch(const Parsed& parsed);
-int completion(const Parsed& parsed);
 
 /// Runs the words of a command line, without `credence`, and returns the exit code; errors are thrown.
 int obey(const std::vector<std::string>& words);
-/// Runs the command whose options these are.
-int obey(const Parsed& parsed);
+/// Runs the command whose options these are; their line is made up from them.
+int obey(Parsed parsed);
 /// Throws InputError where this process cannot do the command's work, whatever its arguments: such faults of its
 /// environment need not be those of a process on another machine.
 void check_process(const std::vector<std::string>& words);

@@ -34,7 +34,8 @@ const Command& compare_command() {
          failed_option("a warning comes first"),
          format_option({"text", "json", "csv", "html"}),
          output_option("write there, not to the standard output"),
-         overwrite_option()}};
+         overwrite_option()},
+        [](const Parsed& parsed) { return give(parsed, compared); }};
     return command;
 }
 
@@ -138,12 +139,6 @@ Rendering compared(const Parsed& parsed) {
                : format == "html" ? compare_html(report, made_by())
                                   : compare_text(report);
     };
-}
-
-int compare(const Parsed& parsed) {
-    const std::string format = parsed.choice("format");
-    write_output(parsed, compared(parsed)(format));
-    return 0;
 }
 
 }  // namespace credence::cli

@@ -38,7 +38,8 @@ const Command& judge_command() {
                           "of the truth's own errors: of every component in its unit, such as 0.005, or of groups and "
                           "components, such as position=0.005,heading=0.1deg; an upper bound"},
                          {"truth-dependent", "", "the truth was made of data that the filter used"},
-                         {"quiet", "", "no progress"}})};
+                         {"quiet", "", "no progress"}}),
+        [](const Parsed& parsed) { return give_report(parsed, judged); }};
     return command;
 }
 
@@ -63,7 +64,5 @@ Reported judged(const Parsed& parsed) {
     }
     return {together(std::move(reports)), parsed.arguments.front(), facts};
 }
-
-int judge(const Parsed& parsed) { return give_report(parsed, judged); }
 
 }  // namespace credence::cli

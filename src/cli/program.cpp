@@ -54,39 +54,12 @@ public:
     ExitGuard& operator=(const ExitGuard&) = delete;
 };
 
-/// A subcommand: its description, and the function that runs it.
-struct Subcommand {
-    const cli::Command& (*command)();
-    int (*work)(const cli::Parsed&, const std::string& command_line);
-};
-
-template <int (*work)(const cli::Parsed&)>
-int without_line(const cli::Parsed& parsed, const std::string&) {
-    return work(parsed);
-}
-
-const std::vector<Subcommand>& subcommands() {
-    static const std::vector<Subcommand> all{{cli::run_command, cli::run},
-                                             {cli::report_command, without_line<cli::report>},
-                                             {cli::judge_command, without_line<cli::judge>},
-                                             {cli::compare_command, without_line<cli::compare>},
-                                             {cli::budget_command, without_line<cli::budget>},
-                                             {cli::replay_command, cli::replay},
-                                             {cli::merge_command, cli::merge},
-                                             {cli::watch_command, without_line<cli::watch>},
-                                             {cli::show_command, without_line<cli::show>},
-                                             {cli::completion_command, without_line<cli::completion>}};
-    return all;
-}
-
 int help() {
     const std::string name = program_name();
     cli::print(name + ": can a filter's covariance be believed, and does planning a path pay?\n\nusage: " + name +
                " COMMAND ... (`" + name + " COMMAND --help` says more)\n\n");
-    for (const Subcommand& subcommand : subcommands()) {
-        const cli::Command& command = subcommand.command();
-        std::cout << "  " << command.name << std::string(12 - command.name.size(), ' ') << command.summary << "\n";
-    }
+    for (const cli::Command* command : cli::all_commands())
+        std::cout << "  " << command->name << std::string(12 - command->name.size(), ' ') << command->summary << "\n";
     cli::print("\n  --help      this\n  --version   the version and how it was built\n\n" +
                wrapped(std::string("Exit codes: 0 done, 1 failed, 2 bad input, 3 stopped by a signal with everything "
                                    "kept, 130 ended at once by a second signal.")) + "\n");
@@ -117,12 +90,13 @@ int complain(const std::string& message, int exit_code) {
 
 int dispatch(const std::string& name, const std::vector<std::string>& arguments, const std::string& line) {
     std::vector<std::string> names{"--help", "--version"};
-    for (const Subcommand& subcommand : subcommands()) {
-        if (subcommand.command().name == name) {
-            const std::optional<cli::Parsed> parsed = cli::parse(subcommand.command(), arguments);
-            return parsed ? subcommand.work(*parsed, line) : 0;
+    for (const cli::Command* command : cli::all_commands()) {
+        if (command->name == name) {
+            std::optional<cli::Parsed> parsed = cli::parse(*command, arguments);
+            if (parsed) parsed->line = line;
+            return parsed ? command->work(*parsed) : 0;
         }
-        names.push_back(subcommand.command().name);
+        names.push_back(command->name);
     }
     const std::string meant = closest(name, names);
     throw InputError("unknown command " + printable(name), {},
@@ -173,9 +147,8 @@ void hold_standard_streams() {
 namespace credence {
 
 std::vector<const cli::Command*> cli::all_commands() {
-    std::vector<const Command*> commands;
-    for (const Subcommand& subcommand : subcommands()) commands.push_back(&subcommand.command());
-    return commands;
+    return {&run_command(),    &report_command(), &judge_command(), &compare_command(), &budget_command(),
+            &replay_command(), &merge_command(),  &watch_command(), &show_command(),    &completion_command()};
 }
 
 /// Handles `--help`, `help`, `help COMMAND` and `--version`, or runs a command.
@@ -193,15 +166,15 @@ int cli::obey(const std::vector<std::string>& words) {
     return arguments.empty() ? help() : dispatch(arguments.front(), {"--help"}, "");
 }
 
-int cli::obey(const Parsed& parsed) {
+int cli::obey(Parsed parsed) {
     const std::string& name = parsed.command->name;
     const ExitGuard guard(program_name() + " " + name);
     std::vector<std::string> words{name};
     std::ranges::copy(parsed.arguments, std::back_inserter(words));
     for (const auto& [option, values] : parsed.values)
         for (const std::string& value : values) words.push_back("--" + option + (value.empty() ? "" : "=" + value));
-    const auto named = [&](const Subcommand& one) { return one.command().name == name; };
-    return std::ranges::find_if(subcommands(), named)->work(parsed, command_line(words));
+    parsed.line = command_line(words);
+    return parsed.command->work(parsed);
 }
 
 void cli::check_process(const std::vector<std::string>& words) {

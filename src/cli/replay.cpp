@@ -20,28 +20,6 @@
 
 namespace credence::cli {
 
-const Command& replay_command() {
-    static const Command command{
-        "replay",
-        "FILE.h5 [--scenario NAME] [--arm ARM] --trial I | SCENARIO.ini --noise RECORD.h5",
-        "run one trial again, pose by pose: from a results file, or on recorded noise",
-        "\nFrom a results file the trial is checked against the stored columns bit for bit (exit 1 where it differs); "
-        "a\n"
-        "file that keeps aggregates has none to check it against.\n"
-        "A noise record holds `odometry` [poses, 3], `walk`, `deformation`, `measurement` [poses, features, 2],\n"
-        "standardised.\n",
-        {{"scenario", "NAME", "scenario of the results file, where it has several"},
-         {"arm", "ARM", "arm, where there are several, such as greedy.ekf; greedy alone where that is one arm"},
-         {"trial", "I", "trial of the results file, from 0"},
-         {"noise", "RECORD.h5", "recorded noise for SCENARIO.ini"},
-         set_option(),
-         format_option({"text", "json", "csv"}),
-         output_option("write the trajectory there: truth, estimates, covariances, innovations, the planner's costs",
-                       "FILE.h5"),
-         overwrite_option()}};
-    return command;
-}
-
 namespace {
 
 std::vector<Trajectory> replay_noise(const Parsed& parsed, const std::string& record_path) {
@@ -211,9 +189,7 @@ std::string as_text(const std::vector<Trajectory>& trajectories) {
     return text;
 }
 
-}  // namespace
-
-int replay(const Parsed& parsed, const std::string& command_line) {
+int replay(const Parsed& parsed) {
     if (parsed.arguments.size() != 1)
         throw InputError("replay takes one results file or one scenario", {},
                          as_command({"replay", "--help"}) + " shows how");
@@ -223,13 +199,38 @@ int replay(const Parsed& parsed, const std::string& command_line) {
     const std::vector<Trajectory> trajectories = noise ? replay_noise(parsed, *noise) : replay_stored(parsed);
     if (output) {
         RunFacts facts = build_facts();
-        facts.emplace_back("command_line", command_line);
+        facts.emplace_back("command_line", parsed.line);
         write_trajectories(*output, trajectories, facts);
     }
     print(format == "json"  ? as_json(trajectories)
           : format == "csv" ? as_csv(trajectories)
                             : as_text(trajectories));
     return 0;
+}
+
+}  // namespace
+
+const Command& replay_command() {
+    static const Command command{
+        "replay",
+        "FILE.h5 [--scenario NAME] [--arm ARM] --trial I | SCENARIO.ini --noise RECORD.h5",
+        "run one trial again, pose by pose: from a results file, or on recorded noise",
+        "\nFrom a results file the trial is checked against the stored columns bit for bit (exit 1 where it differs); "
+        "a\n"
+        "file that keeps aggregates has none to check it against.\n"
+        "A noise record holds `odometry` [poses, 3], `walk`, `deformation`, `measurement` [poses, features, 2],\n"
+        "standardised.\n",
+        {{"scenario", "NAME", "scenario of the results file, where it has several"},
+         {"arm", "ARM", "arm, where there are several, such as greedy.ekf; greedy alone where that is one arm"},
+         {"trial", "I", "trial of the results file, from 0"},
+         {"noise", "RECORD.h5", "recorded noise for SCENARIO.ini"},
+         set_option(),
+         format_option({"text", "json", "csv"}),
+         output_option("write the trajectory there: truth, estimates, covariances, innovations, the planner's costs",
+                       "FILE.h5"),
+         overwrite_option()},
+        replay};
+    return command;
 }
 
 }  // namespace credence::cli

@@ -4,7 +4,6 @@
 
 #include <credence/error.hpp>
 #include <credence/report.hpp>
-#include <credence/detail/store.hpp>
 
 #include <filesystem>
 
@@ -17,7 +16,8 @@ const Command& report_command() {
         "say what a results file proves, with confidence",
         "\nWith --require consistent the exit code is 1 unless every arm's verdict is `consistent`; with --require\n"
         "no-finding it is 1 if an arm is refuted: `undecided` passes.\n",
-        verdict_options()};
+        verdict_options(),
+        [](const Parsed& parsed) { return give_report(parsed, reported); }};
     return command;
 }
 
@@ -71,7 +71,5 @@ Reported reported(const Parsed& parsed) {
     StoredStudy stored = read_results(path, most_totals_in_memory);
     return {make_report(stored.study, limits), path, std::move(stored.run)};
 }
-
-int report(const Parsed& parsed) { return give_report(parsed, reported); }
 
 }  // namespace credence::cli

@@ -11,17 +11,6 @@
 
 namespace credence::cli {
 
-const Command& show_command() {
-    static const Command command{
-        "show",
-        "[SCENARIO.ini] [--set section.key=value]... [--sweep section.key=VALUES]...",
-        "print a scenario as resolved, every default visible",
-        "\nWithout a file: the defaults, with what each key means. With --sweep: every point of the\n"
-        "grid.\n",
-        {set_option(), sweep_option()}};
-    return command;
-}
-
 namespace {
 
 /// One scenario is printed as a file that can be run; of several, each one is.
@@ -32,16 +21,6 @@ void show_scenarios(const std::vector<Scenario>& scenarios) {
                   scenarios[i].name + "\n");
         print(scenario_text(scenarios[i]));
     }
-}
-
-}  // namespace
-
-DescribedKey described_world() {
-    DescribedKey key{world_key, first_world, "", {}};
-    for (const World* world : all_worlds()) key.choices.push_back(world->name());
-    key.help = "the world: " + joined(key.choices) + "; each has keys of its own, --set " + world_key + "=" +
-               key.choices.back() + " shows them";
-    return key;
 }
 
 int show(const Parsed& parsed) {
@@ -68,6 +47,28 @@ int show(const Parsed& parsed) {
     }
     say_notes({scenario}, "show");
     return 0;
+}
+
+}  // namespace
+
+DescribedKey described_world() {
+    DescribedKey key{world_key, first_world, "", {}};
+    for (const World* world : all_worlds()) key.choices.push_back(world->name());
+    key.help = "the world: " + joined(key.choices) + "; each has keys of its own, --set " + world_key + "=" +
+               key.choices.back() + " shows them";
+    return key;
+}
+
+const Command& show_command() {
+    static const Command command{
+        "show",
+        "[SCENARIO.ini] [--set section.key=value]... [--sweep section.key=VALUES]...",
+        "print a scenario as resolved, every default visible",
+        "\nWithout a file: the defaults, with what each key means. With --sweep: every point of the\n"
+        "grid.\n",
+        {set_option(), sweep_option()},
+        show};
+    return command;
 }
 
 }  // namespace credence::cli

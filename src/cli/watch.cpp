@@ -15,24 +15,8 @@
 #include <chrono>
 #include <cstdlib>
 #include <iostream>
-#include <vector>
 
 namespace credence::cli {
-
-const Command& watch_command() {
-    static const Command command{
-        "watch",
-        "FILE.h5 [options]",
-        "follow a run: what is committed so far, with intervals",
-        "\nReads FILE.h5.journal while the run goes on and FILE.h5 when it is done; the run does not notice. On a\n"
-        "terminal the table is drawn again until the run ends (exit code 0) or Ctrl-C ends the watching (3); the run\n"
-        "goes on then. When output is not a terminal, one snapshot is printed. To watch and stop when an interval is\n"
-        "narrow enough is not `" + program_name() + " run --until`, whose intervals allow for its interim analyses.\n",
-        {{"every", "SECONDS", "seconds between two snapshots on a terminal (default 2)"},
-         {"once", "", "one snapshot, on a terminal too"},
-         format_option({"text", "json"})}};
-    return command;
-}
 
 namespace {
 
@@ -121,8 +105,6 @@ std::string results_path(const std::string& given) {
     return given.ends_with(journal) ? given.substr(0, given.size() - journal.size()) : given;
 }
 
-}  // namespace
-
 int watch(const Parsed& parsed) {
     if (parsed.arguments.size() != 1) throw InputError("watch takes one results file", {}, "Give FILE.h5");
     const std::string format = parsed.choice("format");
@@ -138,6 +120,24 @@ int watch(const Parsed& parsed) {
     const Snapshot snapshot = follow(run, every);
     print(watch_text(snapshot));
     return snapshot.ended() ? 0 : 3;
+}
+
+}  // namespace
+
+const Command& watch_command() {
+    static const Command command{
+        "watch",
+        "FILE.h5 [options]",
+        "follow a run: what is committed so far, with intervals",
+        "\nReads FILE.h5.journal while the run goes on and FILE.h5 when it is done; the run does not notice. On a\n"
+        "terminal the table is drawn again until the run ends (exit code 0) or Ctrl-C ends the watching (3); the run\n"
+        "goes on then. When output is not a terminal, one snapshot is printed. To watch and stop when an interval is\n"
+        "narrow enough is not `" + program_name() + " run --until`, whose intervals allow for its interim analyses.\n",
+        {{"every", "SECONDS", "seconds between two snapshots on a terminal (default 2)"},
+         {"once", "", "one snapshot, on a terminal too"},
+         format_option({"text", "json"})},
+        watch};
+    return command;
 }
 
 }  // namespace credence::cli

@@ -15,15 +15,6 @@
 
 namespace credence::cli {
 
-const Command& completion_command() {
-    static const Command command{"completion", "bash", "print the script that completes command lines in bash",
-                                 "\nFor this shell alone: source <(" + program_name() +
-                                     " completion bash). `cmake --install` puts it\n"
-                                 "where bash-completion finds it.\n",
-                                 {}};
-    return command;
-}
-
 namespace {
 
 /// `ini` for `SCENARIO.ini`, the extension of the files that such a word denotes; `*` for `FILE`; nothing for another
@@ -140,14 +131,24 @@ std::string script() {
            of_program(filled(text, "@COMMANDS@", cases));
 }
 
-}  // namespace
-
 int completion(const Parsed& parsed) {
     if (parsed.arguments.size() != 1) throw InputError("completion takes the name of a shell", {}, "Give bash");
     if (parsed.arguments.front() != "bash")
         throw invalid_value("shell", parsed.arguments.front(), "only bash can be completed", "Give bash");
     std::cout << script();
     return 0;
+}
+
+}  // namespace
+
+const Command& completion_command() {
+    static const Command command{"completion", "bash", "print the script that completes command lines in bash",
+                                 "\nFor this shell alone: source <(" + program_name() +
+                                     " completion bash). `cmake --install` puts it\n"
+                                 "where bash-completion finds it.\n",
+                                 {},
+                                 completion};
+    return command;
 }
 
 }  // namespace credence::cli

@@ -16,50 +16,6 @@
 
 namespace credence::cli {
 
-const Command& run_command() {
-    static const Command command{
-        "run",
-        "SCENARIO.ini... [options] | --resume -o FILE.h5 [options]",
-        "run a study: every scenario under all its arms",
-        "\nThe same scenarios and seed give the same results for any number of threads, shards and interruptions.\n"
-        "Until the results file is written, FILE.h5.journal beside it keeps what is done. Ctrl-C stops the run with\n"
-        "everything kept (exit code 3), and --resume resumes it; without scenarios, with those of the file.\n",
-        {output_option("results file (default credence.h5)", "FILE.h5"),
-         {"trials", "N", "trials of each scenario (default 10000)"},
-         {"seed", "N", "root seed, from 0 to 2^64 - 1 (default 1)"},
-         {"threads", "N", "threads (default: all processors)"},
-         set_option(),
-         sweep_option(),
-         {"until", "METRIC=HALFWIDTH",
-          "stop at the first interim analysis (4096 trials, 8192 ...) at which this mean is known to +- HALFWIDTH, "
-          "such as trace_P=0.5% or 'trace_P[greedy-fixed]=0.01'; --trials is the ceiling then (default 10^7); "
-          "repeatable: all must be met",
-          true},
-         {"shard", "I/N",
-          "run block b of 256 trials where b mod N = I only; `" + program_name() +
-              " merge` joins the files; auto: the "
-              "shard that the Slurm array, srun or mpirun names; {shard} in the name of the results file becomes I"},
-         {"resume", "",
-          "run what is missing after an interruption, or to a larger --trials; start where there is nothing"},
-         {"overwrite", "", "replace a results file that exists"},
-         {"keep",
-          "WHAT",
-          "trials: one number a trial of every column (default); aggregates: their totals over the trials only, in "
-          "memory, journal and file alike, for studies of more trials than a disk holds: no medians, no distributions",
-          false,
-          {"trials", "aggregates"}},
-         {"budget", "WHEN",
-          "run the worlds of a budget, which `" + program_name() + " budget` reads from the results file: with errors "
-          "at the last step, or their mean over the steps",
-          false, {"last", "mean"}},
-         {"commit-every", "BLOCKS",
-          "blocks of 256 trials after which the journal is made to last (default: after half a second)"},
-         {"dry-run", "", "say what time, memory and file size to expect, and stop"},
-         {"force", "", "start a run that --dry-run says cannot fit"},
-         {"quiet", "", "no progress and no table"}}};
-    return command;
-}
-
 namespace {
 
 bool nothing_missing(const Study& study, const RunOptions& options) {
@@ -180,9 +136,7 @@ Work keep(StoredRun& stored, const RunRequest& request, const std::string& comma
     }
 }
 
-}  // namespace
-
-int run(const Parsed& parsed, const std::string& command_line) {
+int run(const Parsed& parsed) {
     RunRequest request = read_request(parsed);
     const Interrupt interrupt;
     StoredRun stored = starting_run(request);
@@ -195,12 +149,59 @@ int run(const Parsed& parsed, const std::string& command_line) {
         say(program_name() + " run: note: " + printable(request.output) + " has " + std::to_string(there) +
             " trials of each scenario already, more than " +
             as_option("trials", std::to_string(request.options.trials)) + ".\n");
-    const Work work = keep(stored, request, command_line);
-    if (Interrupt::came() && !stored.study().complete) return stopped(stored, request, command_line);
+    const Work work = keep(stored, request, parsed.line);
+    if (Interrupt::came() && !stored.study().complete) return stopped(stored, request, parsed.line);
     if (work.last_analysis && !work.last_analysis->met)
         say(program_name() + " run: " + imprecision_text(*work.last_analysis, request.rule()) + "\n");
     if (!request.quiet) print_table(stored.study(), request, work);
     return 0;
+}
+
+}  // namespace
+
+const Command& run_command() {
+    static const Command command{
+        "run",
+        "SCENARIO.ini... [options] | --resume -o FILE.h5 [options]",
+        "run a study: every scenario under all its arms",
+        "\nThe same scenarios and seed give the same results for any number of threads, shards and interruptions.\n"
+        "Until the results file is written, FILE.h5.journal beside it keeps what is done. Ctrl-C stops the run with\n"
+        "everything kept (exit code 3), and --resume resumes it; without scenarios, with those of the file.\n",
+        {output_option("results file (default credence.h5)", "FILE.h5"),
+         {"trials", "N", "trials of each scenario (default 10000)"},
+         {"seed", "N", "root seed, from 0 to 2^64 - 1 (default 1)"},
+         {"threads", "N", "threads (default: all processors)"},
+         set_option(),
+         sweep_option(),
+         {"until", "METRIC=HALFWIDTH",
+          "stop at the first interim analysis (4096 trials, 8192 ...) at which this mean is known to +- HALFWIDTH, "
+          "such as trace_P=0.5% or 'trace_P[greedy-fixed]=0.01'; --trials is the ceiling then (default 10^7); "
+          "repeatable: all must be met",
+          true},
+         {"shard", "I/N",
+          "run block b of 256 trials where b mod N = I only; `" + program_name() +
+              " merge` joins the files; auto: the "
+              "shard that the Slurm array, srun or mpirun names; {shard} in the name of the results file becomes I"},
+         {"resume", "",
+          "run what is missing after an interruption, or to a larger --trials; start where there is nothing"},
+         {"overwrite", "", "replace a results file that exists"},
+         {"keep",
+          "WHAT",
+          "trials: one number a trial of every column (default); aggregates: their totals over the trials only, in "
+          "memory, journal and file alike, for studies of more trials than a disk holds: no medians, no distributions",
+          false,
+          {"trials", "aggregates"}},
+         {"budget", "WHEN",
+          "run the worlds of a budget, which `" + program_name() + " budget` reads from the results file: with errors "
+          "at the last step, or their mean over the steps",
+          false, {"last", "mean"}},
+         {"commit-every", "BLOCKS",
+          "blocks of 256 trials after which the journal is made to last (default: after half a second)"},
+         {"dry-run", "", "say what time, memory and file size to expect, and stop"},
+         {"force", "", "start a run that --dry-run says cannot fit"},
+         {"quiet", "", "no progress and no table"}},
+        run};
+    return command;
 }
 
 }  // namespace credence::cli
