@@ -23,6 +23,12 @@ inline Study new_study(const std::vector<DeformableSettings>& scenarios, std::ui
     return new_study(declarations_of(scenarios), root_seed, keep);
 }
 
+/// Sets all blocks of `trials` trials, the totals in memory.
+inline void extend(ScenarioResults& results, std::int64_t trials) {
+    load_totals(results);
+    set_blocks(results, BlockRanges::below(block_count(trials)), trials);
+}
+
 /// Sets the totals of trials to those of columns that were changed, and leaves out of the counts of the others what is
 /// more than that.
 inline void recount(ScenarioResults& results) {

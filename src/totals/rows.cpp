@@ -130,11 +130,6 @@ void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trial
     }
 }
 
-void extend(ScenarioResults& results, std::int64_t trials) {
-    load_totals(results);
-    set_blocks(results, BlockRanges::below(block_count(trials)), trials);
-}
-
 void copy_details(ScenarioResults& to, const ScenarioResults& from, std::int64_t block) {
     const std::int64_t row_to = first_row(to, block).value(), row_from = first_row(from, block).value();
     if (row_to >= to.detailed() || row_from >= from.detailed()) return;

@@ -181,9 +181,6 @@ std::optional<std::int64_t> first_row(const ScenarioResults& results, std::int64
 /// are unspecified until they are stored. Totals do not change, nor values that are not in memory.
 void set_blocks(ScenarioResults& results, BlockRanges blocks, std::int64_t trials);
 
-/// Sets all blocks of `trials` trials, the totals in memory.
-void extend(ScenarioResults& results, std::int64_t trials);
-
 /// Copies the details, if any, of a block that both have. Different blocks may be copied at once.
 void copy_details(ScenarioResults& to, const ScenarioResults& from, std::int64_t block);
 
