@@ -124,8 +124,8 @@ def advised(x, case, limits):
     weights = np.empty((ADVICE_DRAWS, x.trials))
     for b in range(0, ADVICE_DRAWS, 2):
         weights[b : b + 2] = normal(case["seed"] ^ ADVICE_KEY, x.index, 0, b // 2).T
-    low, number, high, (kind, where, side) = advice(x, limits, weights)
-    return {"range": [low, high], "number": number, "kind": kind, "where": where, "side": side}
+    low, number, high, _ = advice(x, limits, weights)
+    return {"range": [low, high], "number": number}
 
 
 def verdict_on_lags(x):

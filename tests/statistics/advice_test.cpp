@@ -26,7 +26,6 @@ void check_same(const std::optional<Advice>& one, const std::optional<Advice>& o
     REQUIRE((one && other));
     CHECK(std::abs(one->trials / other->trials - 1) < 1e-9);
     CHECK(std::abs(one->range.high / other->range.high - 1) < 1e-9);
-    CHECK(one->binding == other->binding);
 }
 
 }  // namespace

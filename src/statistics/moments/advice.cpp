@@ -41,15 +41,10 @@ double number_for_all(const std::vector<Requirement>& requirements) {
     return quantile_of(most, advised_share);
 }
 
+/// What needs most trials.
 const Requirement& binding_one(const std::vector<Requirement>& requirements) {
-    std::size_t binding = 0;
-    double most = -1;
-    for (std::size_t r = 0; r < requirements.size(); ++r)
-        if (const double number = quantile_of(requirements[r].trials(), advised_share); number > most) {
-            most = number;
-            binding = r;
-        }
-    return requirements[binding];
+    return *std::ranges::max_element(
+        requirements, {}, [](const Requirement& one) { return quantile_of(one.trials(), advised_share); });
 }
 
 }  // namespace
@@ -62,9 +57,8 @@ std::optional<Advice> trials_for_consistent(const TrialMoments& trials, const st
     if (!requirements) return std::nullopt;
     const double least = state.size() >= 2 ? direction_trials : 2;
     const double number = std::max(least, number_for_all(*requirements));
-    const Requirement& binding = binding_one(*requirements);
-    const double factor = binding.uncertainty();
-    return Advice{number, {number / factor, number * factor}, binding.need, binding.where};
+    const double factor = binding_one(*requirements).uncertainty();
+    return Advice{number, {number / factor, number * factor}};
 }
 
 double trials_to_show(const PositiveSample& sample, double level, double margin) {

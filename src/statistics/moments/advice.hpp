@@ -18,16 +18,11 @@ struct AdviceLimits {
     double bias = 0.1;        ///< sigmas
 };
 
-/// What must be shown for the verdict `consistent`.
-enum class Need { run_above, run_below, bias, direction_above, direction_below };
-
 /// The number of trials at which an exactly consistent filter with the spread seen is shown consistent in 80 % of
 /// studies.
 struct Advice {
     double trials = 0;
-    Interval range;                  ///< that holds the number with 90 %
-    Need binding = Need::run_above;  ///< what needs most trials
-    int where = 0;                   ///< the group or the component of `binding`
+    Interval range;  ///< that holds the number with 90 %
 };
 
 /// The trials' numbers are centred on what an exactly consistent filter has, and samples of N are drawn from them with

@@ -44,19 +44,18 @@ MatrixXd multipliers(const TrialMoments& trials, std::uint64_t root_seed) {
     return drawn / std::sqrt(static_cast<double>(count));
 }
 
-void require_run(const VectorXd& X, int group, const MatrixXd& drawn, double margin, std::vector<Requirement>& all) {
+void require_run(const VectorXd& X, const MatrixXd& drawn, double margin, std::vector<Requirement>& all) {
     const VectorXd values = X / X.mean(), deviates = drawn.transpose() * values;
     const double half = normal_quantile(2 * levels::acceptance) * deviation(values);
     const VectorXd above = deviates.array() + half * (1 + margin), below = half - deviates.array();
-    all.push_back({Need::run_above, group, margin, values, above});
-    all.push_back({Need::run_below, group, margin, values, below});
+    all.push_back({margin, values, above});
+    all.push_back({margin, values, below});
 }
 
-void require_bias(const VectorXd& z, int component, const MatrixXd& drawn, double margin,
-                  std::vector<Requirement>& all) {
+void require_bias(const VectorXd& z, const MatrixXd& drawn, double margin, std::vector<Requirement>& all) {
     const double half = normal_quantile(2 * levels::acceptance) * deviation(z);
     const VectorXd scaled = (drawn.transpose() * z).array().abs() + half;
-    all.push_back({Need::bias, component, margin, z, scaled});
+    all.push_back({margin, z, scaled});
 }
 
 /// The triangles of R_i = A S_i A' - D C_i D', A and D the inverse Cholesky factors of mean S and mean C: residuals of
@@ -90,8 +89,8 @@ void require_directions(const MatrixXd& R, int dimension, const MatrixXd& drawn,
         above[b] = pairs.values[dimension - 1] + z * deviation(up) * (1 + margin);
         below[b] = z * deviation(down) - pairs.values[0];
     }
-    all.push_back({Need::direction_above, 0, margin, up, above});
-    all.push_back({Need::direction_below, 0, margin, down, below});
+    all.push_back({margin, up, above});
+    all.push_back({margin, down, below});
 }
 
 }  // namespace
@@ -102,11 +101,11 @@ std::optional<std::vector<Requirement>> requirements_of(const TrialMoments& tria
     const MatrixXd drawn = multipliers(trials, root_seed);
     for (int g = 0; g < trials.groups; ++g) {
         const VectorXd X = by_trial(trials, [&](std::size_t i) { return trials.X(i, g); });
-        require_run(X, g, drawn, limits.margin, all);
+        require_run(X, drawn, limits.margin, all);
     }
     for (const int j : state) {
         const VectorXd z = by_trial(trials, [&](std::size_t i) { return trials.z(i, j); });
-        require_bias(z, j, drawn, limits.bias, all);
+        require_bias(z, drawn, limits.bias, all);
     }
     if (state.size() < 2) return all;
     const MatrixXd R = residuals(group_moments(trials, state));

@@ -1,7 +1,6 @@
 #pragma once
 // What must be shown for the verdict `consistent`, and from how many trials each of it is, in studies that are drawn.
 
-#include <algorithm>
 #include <cmath>
 
 #include "statistics/moments/advice.hpp"
@@ -13,8 +12,6 @@ inline constexpr int advice_draws = 400;
 
 /// One thing that must be shown: N trials are enough if scaled / sqrt(N) is at most the margin.
 struct Requirement {
-    Need need = Need::run_above;
-    int where = 0;
     double margin = 0;
     Eigen::VectorXd values;  ///< [trials] of this study
     Eigen::VectorXd scaled;  ///< by draw
