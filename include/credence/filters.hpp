@@ -18,7 +18,6 @@
 #include <credence/detail/lie_groups.hpp>
 #include <credence/detail/unscented.hpp>
 
-#include <algorithm>
 #include <cmath>
 
 namespace credence {

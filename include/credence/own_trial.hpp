@@ -32,7 +32,6 @@
 #include <Eigen/Dense>
 
 #include <concepts>
-#include <cstdint>
 #include <limits>
 
 namespace credence {

@@ -7,7 +7,6 @@
 #include <credence/text.hpp>
 
 #include <algorithm>
-#include <functional>
 #include <set>
 
 namespace credence {

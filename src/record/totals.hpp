@@ -3,7 +3,6 @@
 
 #include <credence/record.hpp>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <vector>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/nan.hpp"
 #include "numeric/decompositions.hpp"
 #include "record/presence.hpp"
 #include "record/read.hpp"

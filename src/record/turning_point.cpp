@@ -1,7 +1,6 @@
 // How far the truth would have to be off for NEES to be right [docs/statistics.md, Uncertain truth].
 
 #include <algorithm>
-#include <cmath>
 
 #include "numeric/decompositions.hpp"
 #include "record/read.hpp"

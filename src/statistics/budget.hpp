@@ -8,7 +8,6 @@
 #include <credence/columns.hpp>
 #include <credence/statistics.hpp>
 
-#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>

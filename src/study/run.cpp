@@ -6,17 +6,13 @@
 #include "study/run.hpp"
 
 #include <credence/error.hpp>
-#include <credence/study.hpp>
 #include <credence/detail/worlds.hpp>
 
 #include <omp.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <exception>
-#include <mutex>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>

@@ -1,7 +1,5 @@
 #include "study/run.hpp"
 
-#include "study/block_results.hpp"
-
 #include <utility>
 
 namespace credence {

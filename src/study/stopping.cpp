@@ -1,9 +1,5 @@
 #include "study/stopping.hpp"
 
-#include <credence/statistics.hpp>
-
-#include "base/nan.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

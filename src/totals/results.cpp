@@ -2,8 +2,6 @@
 
 #include "totals/visit_totals.hpp"
 
-#include <algorithm>
-
 namespace credence {
 
 std::string keep_name(Keep keep) { return keep == Keep::trials ? "trials" : "aggregates"; }

@@ -4,7 +4,6 @@
 #include "totals/visit_totals.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
 
 namespace credence {

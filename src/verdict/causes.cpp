@@ -1,7 +1,6 @@
 // What findings often come from: mistakes that leave their mark in the size of the errors beside that of P.
 
 #include "base/formatted.hpp"
-#include "base/nan.hpp"
 #include "statistics/moments/trial_moments.hpp"
 #include "verdict/applied.hpp"
 #include "verdict/judgement.hpp"

@@ -5,7 +5,6 @@
 
 #include <credence/detail/draws.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 

@@ -6,7 +6,6 @@
 #include <credence/text.hpp>
 
 #include <algorithm>
-#include <limits>
 
 namespace credence {
 

@@ -4,6 +4,7 @@
 #include "support.hpp"
 
 #include "slam/trial/problem.hpp"
+#include <credence/text.hpp>
 
 #include <cmath>
 #include <map>

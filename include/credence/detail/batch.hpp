@@ -1,7 +1,6 @@
 #pragma once
 // Module engine: a batch: consecutive trials of one arm, as requested of a simulation, and the arrays for its results.
 
-#include <cstddef>
 #include <cstdint>
 
 namespace credence {

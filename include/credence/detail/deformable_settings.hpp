@@ -8,10 +8,8 @@
 #include <credence/columns.hpp>
 #include <credence/detail/estimator_list.hpp>
 
-#include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace credence {

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <concepts>
-#include <cstddef>
 #include <utility>
 
 namespace Eigen {

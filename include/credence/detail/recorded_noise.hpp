@@ -3,7 +3,6 @@
 
 #include <credence/detail/draws.hpp>
 
-#include <string>
 #include <vector>
 
 namespace credence {

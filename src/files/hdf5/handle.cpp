@@ -6,7 +6,6 @@
 #include "files/system/system_file.hpp"
 
 #include <cerrno>
-#include <cstdlib>
 #include <exception>
 
 namespace credence::hdf5 {

@@ -2,8 +2,6 @@
 
 #include "base/readable_file.hpp"
 
-#include <algorithm>
-
 namespace credence::hdf5 {
 
 namespace {

@@ -1,7 +1,6 @@
 #include "files/system/durable_file.hpp"
 
 #include <credence/error.hpp>
-#include <credence/detail/store.hpp>
 
 #include "files/system/byte_file.hpp"
 #include "files/system/system_file.hpp"
@@ -9,7 +8,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <climits>
 #include <cstdio>
 #include <filesystem>
 

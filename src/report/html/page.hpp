@@ -5,7 +5,6 @@
 #include <credence/report.hpp>
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace credence {

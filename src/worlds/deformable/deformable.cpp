@@ -1,7 +1,5 @@
 #include "worlds/deformable/deformable.hpp"
 
-#include "worlds/deformable/keys.hpp"
-
 #include <credence/detail/world_of.hpp>
 #include <credence/error.hpp>
 #include "worlds/values.hpp"

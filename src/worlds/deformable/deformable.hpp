@@ -4,7 +4,6 @@
 #include <credence/detail/block.hpp>
 #include <credence/detail/recorded_noise.hpp>
 #include "slam/trial/problem.hpp"
-#include "worlds/deformable/keys.hpp"
 #include "worlds/simulate.hpp"
 
 #include <memory>
