@@ -7,16 +7,15 @@
 
 namespace credence {
 
-const Wording program_wording{
-    [](const std::string& name, const std::string& value) {
-        return (name == "output" ? "-o" : "--" + name) + (value.empty() ? "" : " " + value);
-    },
-    [](const std::vector<std::string>& words) {
-        std::string line = "`" + program_name();
-        for (const std::string& word : words) line += " " + shell_word(word);
-        return line + "`";
-    },
-    [](const std::string& command_line) { return command_line; }};
+const Wording program_wording{[](const std::string& name, const std::string& value) {
+                                  return (name == "output" ? "-o" : "--" + name) + (value.empty() ? "" : " " + value);
+                              },
+                              [](const std::vector<std::string>& words) {
+                                  std::string line = "`" + program_name();
+                                  for (const std::string& word : words) line += " " + shell_word(word);
+                                  return line + "`";
+                              },
+                              [](const std::string& command_line) { return command_line; }};
 
 Wording& wording() {
     static Wording words = program_wording;

@@ -111,12 +111,9 @@ struct ShownColumn {
     const char *name, *label;
     int digits;
 };
-constexpr ShownColumn shown_columns[] = {{"trace_P", "trace(P)", 5},
-                                         {"unseen", "unseen", 15},
-                                         {"pose_error", "pose error", 5},
-                                         {"nees_ratio", "NEES/n", 4},
-                                         {"nis_ratio", "NIS/m", 4},
-                                         {"log_score", "log score", 4}};
+constexpr ShownColumn shown_columns[] = {{"trace_P", "trace(P)", 5},      {"unseen", "unseen", 15},
+                                         {"pose_error", "pose error", 5}, {"nees_ratio", "NEES/n", 4},
+                                         {"nis_ratio", "NIS/m", 4},       {"log_score", "log score", 4}};
 
 /// The column of that name; nullptr where the world has none.
 const Column* find_column(const Trajectory& t, const std::string& name) {
@@ -202,9 +199,7 @@ int replay(const Parsed& parsed) {
         facts.emplace_back("command_line", parsed.line);
         write_trajectories(*output, trajectories, facts);
     }
-    print(format == "json"  ? as_json(trajectories)
-          : format == "csv" ? as_csv(trajectories)
-                            : as_text(trajectories));
+    print(format == "json" ? as_json(trajectories) : format == "csv" ? as_csv(trajectories) : as_text(trajectories));
     return 0;
 }
 

@@ -40,9 +40,7 @@ RunFacts build_facts() {
             {"instruction_set", best_target().name},     {"lane_width", std::to_string(best_target().lanes)}};
 }
 
-std::string made_by() {
-    return release_name(build_info::version, build_info::git_revision);
-}
+std::string made_by() { return release_name(build_info::version, build_info::git_revision); }
 
 std::string version_text() {
     std::string text = "credence " + std::string(build_info::version) + "\n";

@@ -70,8 +70,7 @@ public:
     /// Shows as much of the text as fits the terminal, replacing the last one.
     void draw(const std::string& text) {
         winsize size{};
-        if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_row == 0 || size.ws_col == 0)
-            size = {24, 80, 0, 0};
+        if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_row == 0 || size.ws_col == 0) size = {24, 80, 0, 0};
         std::cout << "\033[H\033[J" << cut_to_fit(text, size.ws_row, size.ws_col) << std::flush;
     }
 };

@@ -105,9 +105,8 @@ auto with_source(const std::string& path, const Attributes& attributes, const Us
                            "`innovation` [trial, step, m] and `innovation_covariance` [trial, step, m, m], and may "
                            "name component groups in the attribute `groups`, such as `pose 0:3, feature_1 3:5`",
                            [&](const Handle& root) {
-                               return of_arm(root, named.first, named.second, [&](const Handle& group) {
-                                   return use(FileSource(group, attributes));
-                               });
+                               return of_arm(root, named.first, named.second,
+                                             [&](const Handle& group) { return use(FileSource(group, attributes)); });
                            });
 }
 

@@ -20,8 +20,7 @@ std::optional<struct stat> status_of(const std::string& path) { return status_of
 void check_same_study(const StudyDefinition& there, const StudyDefinition& asked, const std::string& path,
                       const std::string& remedy) {
     const std::string difference = difference_of(there, asked);
-    if (!difference.empty())
-        throw InputError("cannot resume " + path, "it holds another study: " + difference, remedy);
+    if (!difference.empty()) throw InputError("cannot resume " + path, "it holds another study: " + difference, remedy);
 }
 
 /// Whether `whole` has every trial of `part`, which is of the same study.
@@ -39,9 +38,7 @@ bool holds(const Study& whole, const Study& part) {
                       [](const ScenarioResults& a, const ScenarioResults& b) { return holds(a, b); });
 }
 
-std::string ways_out() {
-    return "Give another name, " + as_option("resume") + " or " + as_option("overwrite");
-}
+std::string ways_out() { return "Give another name, " + as_option("resume") + " or " + as_option("overwrite"); }
 
 /// The file's identity as in a journal's header.
 FileIdentity without_device(FileIdentity file) {

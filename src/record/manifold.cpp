@@ -42,8 +42,7 @@ Vector3d log_of(const Quaterniond& q) {
 
 /// V(phi)^-1 t: the translation of Log, V the left Jacobian of SO3.
 Vector3d unturned(const Vector3d& phi, const Vector3d& t) {
-    const double angle = phi.norm(),
-                 factor = angle < 1e-4 ? 1.0 / 12 : (1 - half_cotangent(angle)) / (angle * angle);
+    const double angle = phi.norm(), factor = angle < 1e-4 ? 1.0 / 12 : (1 - half_cotangent(angle)) / (angle * angle);
     return t - phi.cross(t) / 2 + factor * phi.cross(phi.cross(t));
 }
 

@@ -33,9 +33,8 @@ void for_each_step(const RecordPart& part, const RecordValues& values,
 RecordReader::RecordReader(const RecordSource& source, std::int64_t part_numbers)
     : layout_(open_record(source)), part_numbers_(part_numbers) {
     const RecordDatasets& data = layout_.data;
-    for (const DatasetPointer* dataset :
-         {&data.error, &data.truth, &data.estimate, &data.covariance, &data.truth_covariance, &data.innovation,
-          &data.innovation_covariance})
+    for (const DatasetPointer* dataset : {&data.error, &data.truth, &data.estimate, &data.covariance,
+                                          &data.truth_covariance, &data.innovation, &data.innovation_covariance})
         add_size(*dataset);
     for (const DatasetPointer& dataset : data.own) add_size(dataset);
     if (layout_.shape.declared.empty()) layout_.shape.longest = longest_trial();

@@ -111,8 +111,7 @@ Record read_record(RecordReader reader, const std::string& name, const ReportPro
     std::vector<char> counted;
     const ArmResults& arm = record.results.arms.front();
     const std::vector<double>& statuses = arm.columns.in_memory()[status_column(record.results.columns)];
-    for (const double status : statuses)
-        counted.push_back(counts(static_cast<Status>(static_cast<int>(status))));
+    for (const double status : statuses) counted.push_back(counts(static_cast<Status>(static_cast<int>(status))));
     if (std::ranges::count(counted, 1) >= least_segments && has_step_means(reader.shape()))
         record.about_means = [=] {
             return of_reader(open_again,

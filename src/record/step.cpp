@@ -189,8 +189,7 @@ std::string StepEvaluator::evaluate_innovation(const CheckedStep& step, double* 
     white_ = step.nu;
     innovation_factor_.whiten(white_);
     all_series[places_.nis] = white_.squaredNorm();
-    for (std::size_t i = 0; i < step.rows.size(); ++i)
-        whitened[step.rows[i]] = white_(static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < step.rows.size(); ++i) whitened[step.rows[i]] = white_(static_cast<Eigen::Index>(i));
     for (std::size_t g = 0; g < shape_.row_groups.size(); ++g)
         if (const std::string of_group = evaluate_row_group(g, step, all_series); !of_group.empty()) return of_group;
     return {};

@@ -15,9 +15,7 @@ const BudgetPart& part_of(const ArmBudget& arm, const std::string& name) {
     return name.empty() ? arm.parts.front() : *std::ranges::find(arm.parts, name, &BudgetPart::name);
 }
 
-std::string arm_text(const ArmBudget& arm) {
-    return arm.scenario.empty() ? "" : " of " + arm.scenario + "/" + arm.arm;
-}
+std::string arm_text(const ArmBudget& arm) { return arm.scenario.empty() ? "" : " of " + arm.scenario + "/" + arm.arm; }
 
 std::string part_text(const BudgetPart& part, bool counts) {
     std::size_t width = 10;

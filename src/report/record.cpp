@@ -152,8 +152,7 @@ void set_means(const ScenarioResults& segments, ArmReport& arm) {
             const double se = half_width(nis.ratio95) / t_quantile(0.05, count - 1);
             moments = {count, nis.ratio, se * std::sqrt(count), se};
         }
-        if (column.name == "log_score")
-            moments = column_moments(segments.arms.front(), RecordColumn::log_score);
+        if (column.name == "log_score") moments = column_moments(segments.arms.front(), RecordColumn::log_score);
         if (moments.count > 0) column.summary = summary_of(moments);
     }
 }

@@ -140,9 +140,7 @@ Cell share_cell(double share) { return number_cell_as(share, percent(share)); }
 
 Cell p_cell(double p) { return number_cell_as(p, p_text(p)); }
 
-Cell exact_cell(double value) {
-    return std::isfinite(value) ? Cell(to_text(value)) : Cell();
-}
+Cell exact_cell(double value) { return std::isfinite(value) ? Cell(to_text(value)) : Cell(); }
 
 Table& Table::row(std::vector<Cell> cells) {
     rows_.push_back({std::move(cells)});

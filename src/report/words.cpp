@@ -17,9 +17,7 @@ namespace credence {
 namespace {
 
 /// Two decimals, or two digits of what is below 0.1.
-std::string ratio_text(double value) {
-    return formatted(std::abs(value) < 0.1 ? "%.2g" : "%.2f", value);
-}
+std::string ratio_text(double value) { return formatted(std::abs(value) < 0.1 ? "%.2g" : "%.2f", value); }
 
 /// The distance of a finding from the value of a consistent filter.
 double distance_off(const Finding& finding) {

@@ -152,8 +152,7 @@ SweepAxis parse_axis(const std::string& text) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos) throw invalid_sweep(text, "there is no = in it");
     SweepAxis axis{trimmed(text.substr(0, equals)), {}};
-    if (axis.key == "scenario.world")
-        throw invalid_sweep(text, "a grid is of one world", "Give a scenario of each");
+    if (axis.key == "scenario.world") throw invalid_sweep(text, "a grid is of one world", "Give a scenario of each");
     if (!can_be_swept(axis.key))
         throw invalid_sweep(text, axis.key + " changes nothing that is computed", "Sweep another key");
     const std::string items = text.substr(equals + 1);

@@ -60,9 +60,7 @@ struct Decorrelation {
     Vector2<Real> weighted(const Vector2<Real>& pair) const { return {precision.x * pair.x, precision.y * pair.y}; }
 
     /// nu' S^-1 nu, of L^-1 nu
-    Real squared(const Vector2<Real>& nu) const {
-        return fma(precision.y * nu.y, nu.y, precision.x * nu.x * nu.x);
-    }
+    Real squared(const Vector2<Real>& nu) const { return fma(precision.y * nu.y, nu.y, precision.x * nu.x * nu.x); }
 };
 
 template <class Real>
@@ -120,17 +118,15 @@ CREDENCE_INLINE SquaredError<Real> eliminate_pair(const Symmetric<Real, capacity
         });
         return {pivot.squared(e), pivot.positive_definite, ScaledProduct<Real>(pivot.determinant)};
     } else {
-        const Decorrelation<Real> pivot =
-            decorrelation(A[i][i], A[i][i + one], A[i + one][i + one], all_lanes<Real>());
+        const Decorrelation<Real> pivot = decorrelation(A[i][i], A[i][i + one], A[i + one][i + one], all_lanes<Real>());
         const Vector2<Real> e = pivot({vector[i], vector[i + one]});
         Vector2<Real> W[capacity];
         each(first, i, [&](auto k) {
             W[k] = pivot({A[k][i], A[k][i + one]});
             const Vector2<Real> scaled = pivot.weighted(W[k]);
             left.e[k] = fnma(scaled.y, e.y, fnma(scaled.x, e.x, vector[k]));
-            each(first, k + one, [&](auto m) {
-                left.A.entry[m][k] = fnma(scaled.y, W[m].y, fnma(scaled.x, W[m].x, A[m][k]));
-            });
+            each(first, k + one,
+                 [&](auto m) { left.A.entry[m][k] = fnma(scaled.y, W[m].y, fnma(scaled.x, W[m].x, A[m][k])); });
         });
         return {pivot.squared(e), pivot.positive_definite, ScaledProduct<Real>(pivot.determinant)};
     }

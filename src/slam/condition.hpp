@@ -147,9 +147,8 @@ Decorrelation<Real> condition_by_axis(Symmetric<Real, capacity>& P, const Layout
     const auto points = half(layout.size());
     const auto entries = rows.entries();
     Real W[capacity];
-    const auto make_row = [&](auto i) CREDENCE_INLINE_LAMBDA {
-        W[i] = rows([&](auto s) { return P.at(i - i % 2, s); }).x;
-    };
+    const auto make_row = [&](auto i)
+                              CREDENCE_INLINE_LAMBDA { W[i] = rows([&](auto s) { return P.at(i - i % 2, s); }).x; };
     each_entry(layout, entries, make_row);
     const Real xx = rows([&](auto s) { return W[s]; }).x + N;
     const Decorrelation<Real> S = decorrelation_by_axis(xx, used);

@@ -36,9 +36,8 @@ void contrast_innovations(const Belief<Real, capacity>& belief, const FilterPara
         if (contrast.scale == 0) return;
         const Vector2<Real> w = pull[c];
         const Vector2<Real> nu{Real(contrast.scale) * w.x, Real(contrast.scale) * w.y};
-        each(c + one, layout.features(), [&](auto j) {
-            pull[j] = add_scaled(pull[j], Real(-contrast.coefficient[j]), w);
-        });
+        each(c + one, layout.features(),
+             [&](auto j) { pull[j] = add_scaled(pull[j], Real(-contrast.coefficient[j]), w); });
         unexplained = fnma(w.y, nu.y, fnma(w.x, nu.x, unexplained));
         pull[c] = nu;
     });
@@ -77,9 +76,8 @@ Real nis_of_edges(const Symmetric<Real, capacity>& P, const FilterParameters& fi
         work.e[row + one] = idle ? Real(0) : innovations.nu[c].y;
     });
     Real nis = innovations.unexplained;
-    each(zero, contrasts, [&](auto c) {
-        nis = nis + eliminate_pair<Layout::by_axis>(work, zero, two * (contrasts - one - c)).value;
-    });
+    each(zero, contrasts,
+         [&](auto c) { nis = nis + eliminate_pair<Layout::by_axis>(work, zero, two * (contrasts - one - c)).value; });
     return nis;
 }
 

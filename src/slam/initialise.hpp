@@ -15,9 +15,7 @@ void initialise_covariance(Symmetric<Real, capacity>& P, const Layout& layout, i
                            Real variance, Mask<Real> used) {
     constexpr int t = Layout::heading, x = Layout::position, y = x + 1;
     const int f = Layout::feature(j), n = layout.size();
-    const auto row = [&](int i) {
-        return add_scaled(Vector2<Real>{P.at(x, i), P.at(y, i)}, P.at(t, i), c);
-    };
+    const auto row = [&](int i) { return add_scaled(Vector2<Real>{P.at(x, i), P.at(y, i)}, P.at(t, i), c); };
     for (int i = 0; i < n; ++i) {
         if (i == f || i == f + 1) continue;
         const Vector2<Real> with_i = row(i);

@@ -96,8 +96,7 @@ CREDENCE_FLAT void look(const Truth<Real, capacity>& truth, const SensorParamete
         Sighting<Real>& sighting = sightings[j];
         sighting.seen = in_range(sensor, squared);
         if (sensor.detection < 1)
-            sighting.seen =
-                both(sighting.seen, noise.uniform(Source::detection, k, j) < Real(sensor.detection));
+            sighting.seen = both(sighting.seen, noise.uniform(Source::detection, k, j) < Real(sensor.detection));
         if (!measures) sighting.seen = negated(all_lanes<Real>());
         sighting.sigma = sigma_at(sensor, squared);
         sighting.z = truth.feature[j] - truth.position;

@@ -28,8 +28,7 @@ DeformableSettings resolved(DeformableSettings scenario) {
     if (!scenario.planner.speeds) scenario.planner.speeds = heading ? 10 : 5;
     if (!scenario.planner.turns) scenario.planner.turns = default_turns(scenario);
     if (!scenario.planner.horizon) scenario.planner.horizon = has_arm(scenario, Controller::horizon) ? 2 : 1;
-    if (!scenario.arms.estimators)
-        scenario.arms.estimators = std::vector{heading ? Estimator::ekf : Estimator::kf};
+    if (!scenario.arms.estimators) scenario.arms.estimators = std::vector{heading ? Estimator::ekf : Estimator::kf};
     return scenario;
 }
 
@@ -71,8 +70,6 @@ int feature_count(const DeformableSettings& scenario) {
 
 int pose_size(const DeformableSettings& scenario) { return scenario.process == Process::heading ? 3 : 2; }
 
-int state_size(const DeformableSettings& scenario) {
-    return pose_size(scenario) + 2 * feature_count(scenario);
-}
+int state_size(const DeformableSettings& scenario) { return pose_size(scenario) + 2 * feature_count(scenario); }
 
 }  // namespace credence

@@ -27,8 +27,7 @@ void gate_sightings(const Belief<Real, capacity>& belief, const FilterParameters
 /// Conditions a predicted belief on the sightings and on every edge: P <- P - K S K', the correction K nu in `update`;
 /// the mean is not changed. `sightings` [M]; `edge_measurement(e)` gives the difference measured on edge e, world
 /// frame; `linearised(j, sighting)` its rows and innovation.
-template <class Layout, class Real, int capacity, class EdgeMeasurement, class Linearisation,
-          class Updating>
+template <class Layout, class Real, int capacity, class EdgeMeasurement, class Linearisation, class Updating>
 void condition_belief(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
                       const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
                       const Linearisation& linearised, Updating& update) {
@@ -64,8 +63,7 @@ void condition_belief(Belief<Real, capacity>& belief, const FilterParameters& fi
 }
 
 /// Updates a predicted belief: x <- x + K nu, P <- P - K S K'.
-template <class Layout, class Real, int capacity, class EdgeMeasurement, class Linearisation,
-          class Updating>
+template <class Layout, class Real, int capacity, class EdgeMeasurement, class Linearisation, class Updating>
 CREDENCE_FLAT void update_belief(Belief<Real, capacity>& belief, const FilterParameters& filter, const Layout& layout,
                                  const Sighting<Real>* sightings, const EdgeMeasurement& edge_measurement,
                                  const Linearisation& linearised, Updating& update) {

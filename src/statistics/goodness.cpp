@@ -40,8 +40,7 @@ double distance_of_sorted(const std::vector<double>& probabilities) {
 double share_upper_bound(double count, double trials, double level) {
     if (!(trials > 0)) return std::numeric_limits<double>::quiet_NaN();
     if (count >= trials) return 1;
-    const double odds = (count + 1) / (trials - count) *
-                        f_upper_quantile(level, 2 * (count + 1), 2 * (trials - count));
+    const double odds = (count + 1) / (trials - count) * f_upper_quantile(level, 2 * (count + 1), 2 * (trials - count));
     return odds / (1 + odds);
 }
 

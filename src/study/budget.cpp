@@ -88,8 +88,7 @@ ArmBudget budget_of(const Worlds& worlds, std::size_t arm, std::uint64_t root_se
                           first = world.columns.size() - 2 - cells * (is_own_world(world) ? 2 : 1);
         std::vector<double> values(errors.trials * errors.steps);
         for (std::size_t k = 0; k < errors.steps; ++k)
-            copy_counting(world, arm, first + cells * variances + k * n + component, counting, k, errors.steps,
-                            values);
+            copy_counting(world, arm, first + cells * variances + k * n + component, counting, k, errors.steps, values);
         return values;
     };
     errors.of = [&](std::size_t run, std::size_t component) { return read(*worlds[run], false, component); };

@@ -38,8 +38,7 @@ void parse_arms(StoppingGoal& goal) {
     const std::size_t open = goal.metric.find('[');
     if (open == std::string::npos) return;
     if (goal.metric.find(']') != goal.metric.size() - 1) throw refused(goal.text, "the [ is not closed before the =");
-    const std::vector<std::string> arms =
-        split_list(goal.metric.substr(open + 1, goal.metric.size() - open - 2), '-');
+    const std::vector<std::string> arms = split_list(goal.metric.substr(open + 1, goal.metric.size() - open - 2), '-');
     if (arms.size() != 2 || arms[0].empty() || arms[1].empty())
         throw refused(goal.text, "two arms with a - between them stand in [ ]");
     goal.metric = trimmed(goal.metric.substr(0, open));

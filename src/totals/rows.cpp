@@ -56,8 +56,7 @@ std::vector<double> figure_values(const ScenarioResults& results, const ArmResul
     std::vector<double> values = column_values(results, arm, column);
     const std::vector<double> status = column_values(results, arm, status_column(results.columns));
     for (std::size_t i = 0; i < values.size(); ++i)
-        if (failed(static_cast<Status>(static_cast<int>(status[i]))))
-            values[i] = nan;
+        if (failed(static_cast<Status>(static_cast<int>(status[i])))) values[i] = nan;
     return values;
 }
 

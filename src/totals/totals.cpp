@@ -53,9 +53,7 @@ void TrialTotals::add(const TrialTotals& other, int sign) {
     credence::add(differences, other.differences, sign);
 }
 
-std::int64_t TrialTotals::trials() const {
-    return std::accumulate(statuses.begin(), statuses.end(), std::int64_t{0});
-}
+std::int64_t TrialTotals::trials() const { return std::accumulate(statuses.begin(), statuses.end(), std::int64_t{0}); }
 
 std::int64_t TrialTotals::counted() const { return finite() - (diverged_count ? 0 : diverged()); }
 
@@ -76,8 +74,7 @@ const char* problem_of(const TrialTotals& all) {
     for (const std::vector<DifferenceTotals>& columns : all.differences)
         for (std::size_t c = 0; c < columns.size(); ++c) {
             const DifferenceTotals& totals = columns[c];
-            if (none_of(totals.difference.count, all.columns[c].count))
-                return "there are more pairs than values";
+            if (none_of(totals.difference.count, all.columns[c].count)) return "there are more pairs than values";
             if (none_of(totals.below, totals.difference.count) ||
                 none_of(totals.above, totals.difference.count - totals.below))
                 return "more pairs differ than there are";

@@ -146,8 +146,7 @@ void add_degrees(const std::vector<double>& squares, const std::vector<Component
 
 /// P is a power of what it should be, or a factor, of which the spectrum of directions tells more.
 void add_powers(const std::vector<double>& squares, std::vector<Candidate>& all) {
-    const double factor =
-        std::accumulate(squares.begin(), squares.end(), 0.0) / static_cast<double>(squares.size());
+    const double factor = std::accumulate(squares.begin(), squares.end(), 0.0) / static_cast<double>(squares.size());
     all.push_back({Candidate::Kind::factor, std::numeric_limits<int>::max(), false, "",
                    [=](const SampledStep&, Eigen::VectorXd&, Eigen::MatrixXd& P) {
                        P *= factor;

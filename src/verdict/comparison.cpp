@@ -64,8 +64,7 @@ Comparison compare_arms(const ComparedArm& a, const ComparedArm& b, std::uint64_
             const auto other = static_cast<std::size_t>(same - b.results.columns.begin());
             const std::string key = comparison.scenario + "/" + comparison.name() + "/" + column.name;
             comparison.columns.push_back(
-                {column.name, column.unit, compare_column(a, b, c, other, common, root_seed, key), 0,
-                 column.places});
+                {column.name, column.unit, compare_column(a, b, c, other, common, root_seed, key), 0, column.places});
         }
     return comparison;
 }

@@ -168,16 +168,15 @@ std::vector<std::string> causes_of(const Evidence& evidence, Consistency& verdic
     std::vector<std::string> causes{placeholders_of(evidence), mix_up_of(evidence)};
     if (causes.back().empty()) causes.push_back(dropped_of(evidence));
     verdict.mix_up = !causes.back().empty();
-    const std::function<std::string()> others[] = {
-        [&] { return turns_of(evidence); },
-        [&] { return doubt_chart(evidence, verdict); },
-        [&] { return divergence_of(evidence); },
-        [&] { return offset_of(evidence); },
-        [&] { return trend_of(evidence, limits, true); },
-        [&] { return few_of(evidence, limits); },
-        [&] { return noise_of(evidence, limits); },
-        [&] { return trend_of(evidence, limits, false); },
-        [&] { return scale_of(evidence, verdict); }};
+    const std::function<std::string()> others[] = {[&] { return turns_of(evidence); },
+                                                   [&] { return doubt_chart(evidence, verdict); },
+                                                   [&] { return divergence_of(evidence); },
+                                                   [&] { return offset_of(evidence); },
+                                                   [&] { return trend_of(evidence, limits, true); },
+                                                   [&] { return few_of(evidence, limits); },
+                                                   [&] { return noise_of(evidence, limits); },
+                                                   [&] { return trend_of(evidence, limits, false); },
+                                                   [&] { return scale_of(evidence, verdict); }};
     for (const auto& other : others)
         if (std::ranges::all_of(causes, &std::string::empty)) causes.push_back(other());
     std::erase(causes, "");
@@ -186,8 +185,7 @@ std::vector<std::string> causes_of(const Evidence& evidence, Consistency& verdic
 
 void add_hints(const Evidence& evidence, Consistency& verdict) {
     if (!evidence.nis.empty() && evidence.whiteness.empty() && evidence.steps > 1)
-        verdict.hints.push_back(
-            "the correlation of innovations was not tested: no row was measured often enough");
+        verdict.hints.push_back("the correlation of innovations was not tested: no row was measured often enough");
     if (verdict.looks_wrong())
         if (const std::string repeated = repeated_trials(evidence); !repeated.empty())
             verdict.hints.push_back(repeated);

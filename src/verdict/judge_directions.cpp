@@ -97,9 +97,8 @@ void accept_state(const Evidence& evidence, const GroupMoments& state, const Fol
             true);
     const DirectionsAccepted accepted = accept_directions(state, sums, limits_of(evidence, judgement));
     judgement.directions.range = accepted.bounds;
-    judgement.reach(&Reached::direction, accepted.left_out > 0
-                                             ? std::numeric_limits<double>::infinity()
-                                             : accepted.shown);
+    judgement.reach(&Reached::direction,
+                    accepted.left_out > 0 ? std::numeric_limits<double>::infinity() : accepted.shown);
     judgement.directions.spectrum = accepted.spectrum;
     if (accepted.left_out > 0)
         judgement.not_shown("conditioning: P cannot be distinguished from a singular one in " +

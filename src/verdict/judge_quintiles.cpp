@@ -85,8 +85,7 @@ void judge_quintiles(const Evidence& evidence, Judgement& judgement) {
             beyond.push_back(when);
     }
     if (!beyond.empty())
-        judgement.not_shown("NEES/dim of " + state.name + " in " + first_of(beyond) +
-                                ": beyond three times the margin",
+        judgement.not_shown("NEES/dim of " + state.name + " in " + first_of(beyond) + ": beyond three times the margin",
                             true);
 }
 

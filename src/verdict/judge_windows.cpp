@@ -64,8 +64,7 @@ void judge_windows(const Evidence& evidence, Judgement& judgement) {
     const double level = levels::bias / (windows * static_cast<double>(std::max<std::size_t>(1, evidence.bias.size())));
     for (const BiasEvidence& bias : evidence.bias) {
         if (!(bias.run.count > 1)) continue;
-        const double margin =
-            margins_of_part * judgement.limits().bias + truth_allowance(bias.largest_truth, evidence);
+        const double margin = margins_of_part * judgement.limits().bias + truth_allowance(bias.largest_truth, evidence);
         std::vector<int> found;
         bool beyond = false;
         Moments worst;

@@ -131,8 +131,7 @@ double independent_runs(const Evidence& evidence) {
 void judge_size_of_run(const Evidence& evidence, std::size_t g, Judgement& judgement) {
     const GroupEvidence& group = evidence.groups[g];
     if (!(group.run.count > 0) || is_rounded(group, judgement.limits())) return;
-    const double level =
-        level_of_group(levels::run, static_cast<int>(g), static_cast<int>(evidence.groups.size())) / 2;
+    const double level = level_of_group(levels::run, static_cast<int>(g), static_cast<int>(evidence.groups.size())) / 2;
     const auto judge_mean = [&](double mean, double runs, Side side) {
         const Interval bounds = bounds_at_any_correlation(runs, group.dimension, level);
         const Interval interval{mean / bounds.high, mean / bounds.low};

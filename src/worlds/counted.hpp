@@ -31,8 +31,7 @@ inline std::vector<CountedSource> counted_sources(const FilterParameters& filter
     add("walk", [&](FilterParameters& own) { own.variance_feature = share_of_walk * filter.variance_feature; });
     add("deformation",
         [&](FilterParameters& own) { own.variance_feature = (1 - share_of_walk) * filter.variance_feature; });
-    if (filter.edge_count > 0)
-        add("edges", [&](FilterParameters& own) { own.variance_edge = filter.variance_edge; });
+    if (filter.edge_count > 0) add("edges", [&](FilterParameters& own) { own.variance_edge = filter.variance_edge; });
     return sources;
 }
 
@@ -73,8 +72,7 @@ public:
         const double factor = view_.filter.covariance_factor / view_.kept_count;
         for (std::size_t s = 0; s < estimator_.parts().size(); ++s)
             for (int i = 0; i < n; ++i)
-                sum_.variance[s][static_cast<std::size_t>(i)] +=
-                    factor * estimator_.parts()[s].covariance.entry[i][i];
+                sum_.variance[s][static_cast<std::size_t>(i)] += factor * estimator_.parts()[s].covariance.entry[i][i];
     }
     /// The largest |P - sum of P_s| of an entry, relative to the standard deviations of its components.
     double largest_rest() const { return largest_rest_; }

@@ -258,17 +258,15 @@ std::string is_name(const std::string& value) {
 std::string is_title(const std::string& value) {
     if (value.size() > 300) return "must have at most 300 characters";
     if (!is_utf8(value)) return "it is not UTF-8";
-    return characters_not_in(value, [](char c) {
-        return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f && c != '#';
-    });
+    return characters_not_in(value,
+                             [](char c) { return static_cast<unsigned char>(c) >= 0x20 && c != 0x7f && c != '#'; });
 }
 
 std::string is_unit(const std::string& value) {
     if (value.empty() || value.size() > 16) return "must have 1 to 16 characters";
     if (!is_utf8(value)) return "it is not UTF-8";
-    return characters_not_in(value, [](char c) {
-        return is_name_character(c) || static_cast<unsigned char>(c) >= 0x80;
-    });
+    return characters_not_in(value,
+                             [](char c) { return is_name_character(c) || static_cast<unsigned char>(c) >= 0x80; });
 }
 
 void refuse_again(const InputError& refusal, const std::string& value, const std::vector<std::string>& choices) {

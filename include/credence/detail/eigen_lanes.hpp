@@ -54,8 +54,7 @@ template <class T, int size>
 constexpr bool is_large =
     size > (credence::is_pack(static_cast<const T*>(nullptr)) ? 32768 : 131072) / static_cast<int>(sizeof(T));
 template <class T, int size>
-    requires(std::same_as<T, double> && is_large<T, size>)
-struct compute_default_alignment<T, size> {
+requires(std::same_as<T, double>&& is_large<T, size>) struct compute_default_alignment<T, size> {
     enum { value = 0 };
 };
 template <class T, int size, int options>

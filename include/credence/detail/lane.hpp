@@ -19,8 +19,7 @@ struct Lane {
     Lane(V raw) : v(raw) {}
     /// The same number in all lanes. (Unlike one + V{}, the difference is exact for -0; the compiler removes it.)
     template <class Number>
-        requires std::is_arithmetic_v<Number>
-    Lane(Number one) : v(static_cast<double>(one) - V{}) {}
+    requires std::is_arithmetic_v<Number> Lane(Number one) : v(static_cast<double>(one) - V{}) {}
     template <std::same_as<bool> Bool>
     explicit operator Bool() const { return branch<Bool>(); }
 

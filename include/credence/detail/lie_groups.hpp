@@ -210,9 +210,7 @@ struct PoseOf {
     }
 
 private:
-    static Vectors moved(const Tangent& xi) {
-        return Eigen::Map<const Vectors, Eigen::Unaligned>(xi.data() + p);
-    }
+    static Vectors moved(const Tangent& xi) { return Eigen::Map<const Vectors, Eigen::Unaligned>(xi.data() + p); }
     /// [turn, 0; beside_j, along], one row of blocks for each vector.
     template <class A, class B, class Beside>
     static Jacobian blocks(const A& turn, const B& along, Beside beside) {

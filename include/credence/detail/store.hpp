@@ -62,8 +62,7 @@ void write_results(const Output& output, const Study& study, const RunFacts& run
 /// Reads a results file back. Throws InputError, naming the file and the place, where it is not a results file, was
 /// made by another schema version, is damaged, or is inconsistent. Scenarios are read back from their text. Totals and
 /// details beyond `most_totals` bytes are checked and stay in the file [load_totals].
-StoredStudy read_results(const std::string& path,
-                         std::int64_t most_totals = std::numeric_limits<std::int64_t>::max());
+StoredStudy read_results(const std::string& path, std::int64_t most_totals = std::numeric_limits<std::int64_t>::max());
 
 /// The same, but totals and details stay in the file and are not checked before load_totals() reads them, which then
 /// throws.

@@ -84,8 +84,7 @@ auto kalman_update(const Eigen::MatrixBase<DerivedP>& P, const Eigen::MatrixBase
     result.S = symmetric_sum(H, cross.transpose(), R);
     const Eigen::Matrix<Real, n, m> K = cholesky(result.S).solve(cross.transpose()).transpose();
     result.step = K * result.innovation;
-    const Eigen::Matrix<Real, n, n> kept =
-        product_sum(-K, H.transpose(), Eigen::Matrix<double, n, n>::Identity());
+    const Eigen::Matrix<Real, n, n> kept = product_sum(-K, H.transpose(), Eigen::Matrix<double, n, n>::Identity());
     const Eigen::Matrix<Real, n, m> noise = product_sum(K, R, Eigen::Matrix<double, n, m>::Zero());
     result.P = symmetric_sum(noise, K, predicted_covariance(kept, P));
     return result;

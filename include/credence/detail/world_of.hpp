@@ -33,8 +33,7 @@ public:
         std::vector<DescribedKey> described;
         const Settings defaults = world_.defaults();
         for (const KeyOf<Settings>& key : world_.keys())
-            if (!key.hidden)
-                described.push_back({key.name, key.get(defaults), key.help, key.choices, key.sigma_unit});
+            if (!key.hidden) described.push_back({key.name, key.get(defaults), key.help, key.choices, key.sigma_unit});
         return described;
     }
     std::unique_ptr<Draft> draft() const override { return std::make_unique<DraftOf>(*this); }

@@ -126,9 +126,8 @@ std::string script() {
     const std::string version = version_text();
     std::string text = filled(embedded::completion, "@KEYS@", keys_text());
     text = filled(text, "@NAMES@", joined(names, " "));
-    return "# Completion of command lines for bash: " + version.substr(0, version.find('\n')) +
-           ", made by `" + program_name() + " completion bash`.\n\n" +
-           of_program(filled(text, "@COMMANDS@", cases));
+    return "# Completion of command lines for bash: " + version.substr(0, version.find('\n')) + ", made by `" +
+           program_name() + " completion bash`.\n\n" + of_program(filled(text, "@COMMANDS@", cases));
 }
 
 int completion(const Parsed& parsed) {

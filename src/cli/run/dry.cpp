@@ -67,10 +67,9 @@ void check_fit(const RunRequest& request, const Study& study) {
     if (!request.goals.empty()) return;
     const Footprint size = size_of(request, study);
     const auto refuse = [](const std::string& what, std::int64_t needed, std::int64_t there) {
-        throw InputError("cannot run: it takes about " + bytes_text(needed) + " of " + what,
-                         bytes_text(there) + " are there",
-                         "Ask for less, see " + as_option("dry-run") + ", or start it all the same with " +
-                             as_option("force"));
+        throw InputError(
+            "cannot run: it takes about " + bytes_text(needed) + " of " + what, bytes_text(there) + " are there",
+            "Ask for less, see " + as_option("dry-run") + ", or start it all the same with " + as_option("force"));
     };
     if (const std::int64_t there = memory_limit(); size.memory > there) refuse("memory", size.memory, there);
     std::int64_t missing = 0, all = 0;

@@ -92,8 +92,7 @@ Shard shard_of_launcher(const Variables& variables) {
                            "Start it by one of them, or give --shard I/N");
     const Place outer = task.value_or(Place{}), inner = process.value_or(Place{});
     constexpr std::int64_t most = std::int64_t{1} << 31;
-    if (outer.count > most || inner.count > most)
-        throw invalid_auto("too many shards");
+    if (outer.count > most || inner.count > most) throw invalid_auto("too many shards");
     return {outer.index * inner.count + inner.index, outer.count * inner.count};
 }
 

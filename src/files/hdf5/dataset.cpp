@@ -68,8 +68,7 @@ void Dataset::require_extents(const Extents& extents) const {
 bool Dataset::has_type(hid_t type) const { return H5Tequal(type_.id(), type) > 0; }
 
 void Dataset::require_type(hid_t type) const {
-    if (!has_type(type))
-        throw Error(place_, "holds " + kind_text(type_.id()) + ", not " + kind_text(type));
+    if (!has_type(type)) throw Error(place_, "holds " + kind_text(type_.id()) + ", not " + kind_text(type));
 }
 
 std::vector<double> Dataset::read_real() const {

@@ -61,8 +61,7 @@ void require_bits(const Handle& type, const std::string& place) {
 }
 
 RealDataset::RealDataset(const Handle& group, const std::string& name, bool integers)
-    : checked_(group, name),
-      chunk_(checked_.extents().size(), 1) {
+    : checked_(group, name), chunk_(checked_.extents().size(), 1) {
     const Handle type(H5Dget_type(checked_.object().id()), H5Tclose, place(), "HDF5 cannot read its type");
     const H5T_class_t kind = H5Tget_class(type.id());
     if (kind != H5T_FLOAT && !integers)

@@ -27,9 +27,8 @@ Handle creation_properties(hid_t kind) {
 /// A scalar: no dimensions.
 template <class At>
 Handle dataspace(const Extents& extents, const At& place) {
-    const hid_t space = extents.empty()
-                            ? H5Screate(H5S_SCALAR)
-                            : H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr);
+    const hid_t space = extents.empty() ? H5Screate(H5S_SCALAR)
+                                        : H5Screate_simple(static_cast<int>(extents.size()), extents.data(), nullptr);
     return {space, H5Sclose, place, "HDF5 refuses its extents"};
 }
 

@@ -88,9 +88,7 @@ std::int64_t BlockLayout::size(const JournalBlock& block) const {
                                  : block.trials * arms_ * column_at_.back();
 }
 
-std::int64_t value_size(ColumnType type) {
-    return type == ColumnType::real ? 8 : type == ColumnType::integer ? 4 : 1;
-}
+std::int64_t value_size(ColumnType type) { return type == ColumnType::real ? 8 : type == ColumnType::integer ? 4 : 1; }
 
 void put_values(ByteWriter& to, ColumnType type, const double* values, std::size_t count) {
     if (type == ColumnType::real) to.put_raw(values, count * sizeof(double));

@@ -219,8 +219,7 @@ public:
 private:
     void begin(const Study& part, std::size_t file) {
         first_ = file;
-        for (std::size_t s = 0; s < part.scenarios.size(); ++s)
-            scenarios_.emplace_back(part.scenarios[s], part.trials);
+        for (std::size_t s = 0; s < part.scenarios.size(); ++s) scenarios_.emplace_back(part.scenarios[s], part.trials);
         study_ = part;
         for (ScenarioResults& results : study_.scenarios) results.arms.clear();
     }

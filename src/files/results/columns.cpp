@@ -36,8 +36,7 @@ std::vector<double> read_rows(const Dataset& dataset, const Checksums& expected,
     const std::int64_t at = begin / block_size;
     const bool unchanged = at + static_cast<std::int64_t>(sums.size()) <= static_cast<std::int64_t>(expected.size()) &&
                            std::equal(sums.begin(), sums.end(), expected.begin() + at);
-    if (!unchanged)
-        throw Error(dataset.place(), "is damaged: its values have changed since they were checked");
+    if (!unchanged) throw Error(dataset.place(), "is damaged: its values have changed since they were checked");
     const auto from = values.begin() + (first - begin);
     return {from, from + count};
 }

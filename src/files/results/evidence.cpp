@@ -68,10 +68,9 @@ void write_errors(const Handle& group, const hdf5::Dimension& step, const Scenar
     const Handle nees = hdf5::new_variable(group, "detailed_nees", single(arm.nees), {&detailed, &step},
                                            {"normalised estimation error squared of the whole state", "1"});
     hdf5::write_numbers<float>(nees, "_FillValue", {fill});
-    const Handle errors = hdf5::new_variable(group, "detailed_error", single(arm.errors),
-                                             {&detailed, &step, &component},
-                                             {"error of the state after the update, estimate - truth",
-                                              state_units(results.scenario.components)});
+    const Handle errors = hdf5::new_variable(
+        group, "detailed_error", single(arm.errors), {&detailed, &step, &component},
+        {"error of the state after the update, estimate - truth", state_units(results.scenario.components)});
     hdf5::write_numbers<float>(errors, "_FillValue", {fill});
     component.close();
     if (results.moment_count() > 0) write_detailed_moments(group, detailed, results, arm);

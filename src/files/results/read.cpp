@@ -68,8 +68,7 @@ std::shared_ptr<const KeptColumns> read_columns(const Handle& group, const Scena
 }
 
 /// The totals of a series over so many trials.
-SeriesTotals read_series(const Handle& group, const Series& series, hsize_t steps, hsize_t parts,
-                         std::int64_t trials) {
+SeriesTotals read_series(const Handle& group, const Series& series, hsize_t steps, hsize_t parts, std::int64_t trials) {
     const std::string total = series.name + "_total", square = series.name + "_square_total";
     SeriesTotals totals;
     totals.sum = series.integer ? read_whole_sums(group, total, steps) : read_sums(group, total, {steps, parts});
@@ -246,8 +245,7 @@ StoredStudy read_study(const Opened& source) {
 }
 
 Opened open_results(const std::string& path, std::optional<std::int64_t> most_totals) {
-    Opened source{
-        std::make_shared<const Handle>(hdf5::open_file(path)), path, 0, Keep::trials, most_totals};
+    Opened source{std::make_shared<const Handle>(hdf5::open_file(path)), path, 0, Keep::trials, most_totals};
     check_header(*source.file);
     source.asked = hdf5::read_number<std::int64_t>(*source.file, "trials");
     if (source.asked < 0 || source.asked > most_trials) throw Error("/@trials", "is no number of trials");

@@ -41,8 +41,7 @@ Dimension new_column_dimension(const Handle& group, const ScenarioResults& resul
 }
 
 void write_statuses(const Handle& group, const TrialTotals& totals) {
-    Dimension code =
-        numbered<std::int8_t>(group, "status_code", 0, totals.statuses.size(), "how a trial ended");
+    Dimension code = numbered<std::int8_t>(group, "status_code", 0, totals.statuses.size(), "how a trial ended");
     write_status_flags(code.scale);
     hdf5::new_variable(group, "status_count", totals.statuses, {&code}, {"trials by how they ended", "1"});
     code.close();

@@ -75,8 +75,7 @@ std::size_t largest_part_count(const ArmResults& arm, const std::vector<SeriesTo
     return largest;
 }
 
-void write_series(const Handle& group, const EvidenceDimensions& of, const Series& series,
-                  const SeriesTotals& totals) {
+void write_series(const Handle& group, const EvidenceDimensions& of, const Series& series, const SeriesTotals& totals) {
     const hdf5::Dimension &step = of.step, &part = of.part, &level = of.level;
     const std::string total = series.long_name + ": total over the counted trials", square = squared_unit(series.unit);
     const auto write_parts = [&](const std::string& suffix, const std::vector<ExactSum>& sums,
@@ -87,8 +86,7 @@ void write_series(const Handle& group, const EvidenceDimensions& of, const Serie
     if (series.integer) {
         std::vector<std::int64_t> sums;
         for (const ExactSum& sum : totals.sum) sums.push_back(whole_number(sum, series.name));
-        write_role(hdf5::new_variable(group, series.name + "_total", sums, {&step}, {total, series.unit}),
-                   series);
+        write_role(hdf5::new_variable(group, series.name + "_total", sums, {&step}, {total, series.unit}), series);
     } else {
         write_parts("_total", totals.sum, {&step, &part}, {total, series.unit});
         write_parts("_square_total", totals.square_sum, {&step, &part}, {total + " of its square", square});

@@ -27,8 +27,7 @@ enum class Links { followed, themselves };
 
 /// What the system says of the file that a name leads to; nothing where it leads to none that this user can reach.
 /// Throws Failure about `target` where the system cannot say.
-std::optional<struct stat> status_of(const std::string& path, const std::string& target,
-                                     Links links = Links::followed);
+std::optional<struct stat> status_of(const std::string& path, const std::string& target, Links links = Links::followed);
 
 /// Whether the name still leads to the file that was opened. Throws likewise.
 bool same_file(const Descriptor& opened, const std::string& path, const std::string& target);

@@ -95,8 +95,7 @@ bool is_line(const std::string& name) {
 }
 
 void require_name(bool fits, const std::string& name, const std::string& what, const std::string& place) {
-    if (!fits)
-        throw RecordError(place, quoted(name) + " is no name for a " + what, "Use letters, digits, _ and -");
+    if (!fits) throw RecordError(place, quoted(name) + " is no name for a " + what, "Use letters, digits, _ and -");
     if (name == "all")
         throw RecordError(place, "`all` cannot name a " + what + ", because it stands for the whole",
                           "Leave that " + what + " out: the whole is judged anyway");

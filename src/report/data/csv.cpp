@@ -108,8 +108,7 @@ private:
     /// The ratio with its corrected interval, and a row for each component's share.
     void add_direction(const std::string& name, const DirectionOfGroup& direction) {
         add(name + direction.group, direction.ratio, direction.interval);
-        for (const Loading& one : direction.loadings)
-            add(name + direction.group + ":" + one.component, one.weight);
+        for (const Loading& one : direction.loadings) add(name + direction.group + ":" + one.component, one.weight);
     }
     void add_group(const GroupEvidence& group) {
         add_moments("nees_per_dimension:" + group.name, group.run);

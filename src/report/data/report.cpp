@@ -14,12 +14,8 @@ namespace credence {
 namespace {
 
 Json summary_json(const Summary& summary) {
-    return {{"mean", summary.mean},
-            {"se", summary.standard_error},
-            {"ci95", interval_json(summary.ci95)},
-            {"median", summary.median},
-            {"sd", summary.standard_deviation},
-            {"n", summary.count}};
+    return {{"mean", summary.mean},     {"se", summary.standard_error},     {"ci95", interval_json(summary.ci95)},
+            {"median", summary.median}, {"sd", summary.standard_deviation}, {"n", summary.count}};
 }
 
 Json figure_json(const ColumnReport& column) {
@@ -74,12 +70,9 @@ Json suspicion_json(const Suspicion& one) {
 Json direction_json(const DirectionOfGroup& one) {
     Json loadings = Json::object();
     for (const Loading& loading : one.loadings) loadings[loading.component] = loading.weight;
-    return {{"group", one.group},
-            {"direction", one.name},
-            {"ratio", one.ratio},
-            {"interval", interval_json(one.interval)},
-            {"level", one.level},
-            {"loadings", loadings}};
+    return {{"group", one.group}, {"direction", one.name},
+            {"ratio", one.ratio}, {"interval", interval_json(one.interval)},
+            {"level", one.level}, {"loadings", loadings}};
 }
 
 Json directions_json(const DirectionsFound& directions) {
@@ -136,11 +129,10 @@ Json arm_json(const Report& report, const ArmReport& arm) {
     json["evidence"] = arm.evidence.units();
     if (arm.every > 1) json["every"] = arm.every;
     if (segments.steps > 0)
-        json["segments"] = {{"count", std::ssize(segments.run)},
-                            {"steps", segments.steps},
-                            {"autocorrelation_time", segments.autocorrelation_time > 0
-                                                         ? Json(segments.autocorrelation_time)
-                                                         : Json()}};
+        json["segments"] = {
+            {"count", std::ssize(segments.run)},
+            {"steps", segments.steps},
+            {"autocorrelation_time", segments.autocorrelation_time > 0 ? Json(segments.autocorrelation_time) : Json()}};
     const Reached& reached = verdict.reached;
     const Interval& faults = verdict.smallest_faults;
     json["smallest_faults"] = {{"low", faults.low}, {"high", faults.high}};
@@ -159,8 +151,7 @@ Json arm_json(const Report& report, const ArmReport& arm) {
                             {"trials", each_json(arm.evidence.worst.trials, worst_trial_json)}};
     json["suspicions"] = each_json(verdict.suspicions, suspicion_json);
     if (!verdict.truth.empty()) json["truth"] = each_json(verdict.truth, truth_json);
-    if (!verdict.turning_points.empty())
-        json["turning_points"] = each_json(verdict.turning_points, turning_point_json);
+    if (!verdict.turning_points.empty()) json["turning_points"] = each_json(verdict.turning_points, turning_point_json);
     json["findings"] = each_json(verdict.findings, finding_json);
     json["cautions"] = each_json(verdict.cautions, finding_json);
     json.update(evidence_json(arm.evidence));

@@ -13,9 +13,7 @@ namespace credence::page {
 
 namespace {
 
-Table& add(Table& table, const std::string& name, const std::string& value) {
-    return table.row(name, {value});
-}
+Table& add(Table& table, const std::string& name, const std::string& value) { return table.row(name, {value}); }
 
 std::string fact(const RunFacts& facts, const std::string& name) {
     for (const auto& [known, value] : facts)
@@ -101,10 +99,9 @@ Html reproduction(const Report& report, const PageOrigin& origin) {
                   command(run_again(report)) + command("h5diff --exclude-path /run " + file + " again.h5")
             : "<p>The points of large grids have no section of their own here. The text of every scenario is in the "
               "file: the attribute <code>scenario</code> of its group.</p>\n"_html;
-    html +=
-        "<p>This page, and the same with every digit:</p>\n"_html +
-        command(program_name() + " report " + file + options + " --format html -o page.html") +
-        command(program_name() + " report " + file + options + " --format json");
+    html += "<p>This page, and the same with every digit:</p>\n"_html +
+            command(program_name() + " report " + file + options + " --format html -o page.html") +
+            command(program_name() + " report " + file + options + " --format json");
     return html + "</section>\n"_html;
 }
 

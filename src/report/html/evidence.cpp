@@ -40,11 +40,9 @@ Html groups_table(const Part& part) {
                 {count_cell(group->dimension), number_cell(group->run.mean, digits), interval_cell(over_steps, digits),
                  number_cell_within(group->run.standard_error, group->run.standard_error),
                  of_steps(group->anees.outside_simultaneous, group->anees.observed),
-                 of_steps(group->anees.outside, group->anees.observed),
-                 number_cell(mean_of(group->variance_ratio), 2), number_cell(group->accuracy.over_steps, 4),
-                 number_cell(group->accuracy.ratio, ratio_digits),
-                 interval_cell(group->accuracy.ratio_ci95, ratio_digits),
-                 count_cell(group->rounding)});
+                 of_steps(group->anees.outside, group->anees.observed), number_cell(mean_of(group->variance_ratio), 2),
+                 number_cell(group->accuracy.over_steps, 4), number_cell(group->accuracy.ratio, ratio_digits),
+                 interval_cell(group->accuracy.ratio_ci95, ratio_digits), count_cell(group->rounding)});
             if (const Moments& run = group->without_diverged; run.count > 0)
                 rows.row(group->name + " without diverged trials",
                          {count_cell(group->dimension), number_cell(run.mean, digits),
@@ -72,11 +70,10 @@ Html charts_table(const Part& part) {
         for (const ChartEvidence& chart : evidence.charts) {
             const Interval over_steps = t_interval(chart.run);
             const int digits = decimals_for(half_width(over_steps), chart.run.mean);
-            rows.row(chart.name,
-                     {chart.chart, number_cell(chart.run.mean, digits), interval_cell(over_steps, digits),
-                      number_cell_within(chart.run.standard_error, chart.run.standard_error),
-                      of_steps(chart.anees.outside_simultaneous, chart.anees.observed),
-                      of_steps(chart.anees.outside, chart.anees.observed)});
+            rows.row(chart.name, {chart.chart, number_cell(chart.run.mean, digits), interval_cell(over_steps, digits),
+                                  number_cell_within(chart.run.standard_error, chart.run.standard_error),
+                                  of_steps(chart.anees.outside_simultaneous, chart.anees.observed),
+                                  of_steps(chart.anees.outside, chart.anees.observed)});
         }
     });
 }

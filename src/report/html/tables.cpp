@@ -106,8 +106,7 @@ Html difference_table(const Comparison& pair) {
 
 Html difference_spread_table(const Comparison& pair) {
     Table table(pair.scenario + ": " + pair.name() + ", how the differences are spread",
-                    {"column", "pairs", "standard error", "sd", "Wilcoxon's z", "its p, uncorrected",
-                     "sign test's p"});
+                {"column", "pairs", "standard error", "sd", "Wilcoxon's z", "its p, uncorrected", "sign test's p"});
     for (const ComparedColumn& one : pair.columns) {
         const Summary& s = one.paired.difference;
         if (one.paired.pairs == 0) continue;

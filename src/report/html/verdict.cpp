@@ -68,9 +68,8 @@ Table findings_table(const std::string& caption, const std::vector<Finding>& fin
 }
 
 Table suspicions_table(const ArmReport& arm) {
-    Table table(
-        arm.scenario + ", " + arm.arm + ": what looks wrong and is not shown",
-        {"what", "where", "value", "trials that would show it if it stays", "over the mean's 90 % interval"});
+    Table table(arm.scenario + ", " + arm.arm + ": what looks wrong and is not shown",
+                {"what", "where", "value", "trials that would show it if it stays", "over the mean's 90 % interval"});
     for (const Suspicion& one : arm.consistency.suspicions)
         table.row(fault_name(one.what),
                   {one.where + ", " + one.measure, short_cell(one.value), count_cell(one.trials.value),

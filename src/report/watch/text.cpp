@@ -48,8 +48,7 @@ std::string state_text(const Snapshot& snapshot) {
 std::string advice(const Snapshot& snapshot) {
     constexpr double long_time = 60;
     if (snapshot.state == RunState::incomplete && snapshot.shard.count == 1)
-        return "A run that was stopped is resumed by --resume; parts are joined by `" + program_name() +
-               " merge`.\n";
+        return "A run that was stopped is resumed by --resume; parts are joined by `" + program_name() + " merge`.\n";
     if (snapshot.ended() || snapshot.seconds_since_commit < long_time) return "";
     return std::string(snapshot.trials_done() < snapshot.trials_asked() ? "Nothing has been committed for a while"
                                                                 : "All is committed, and the results file is due") +

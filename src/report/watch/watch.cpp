@@ -66,8 +66,7 @@ void JournalFollower::read_file(const std::string& path, const StudyDefinition& 
     const Study stored = read_results(path, 0).study;
     const std::string difference = difference_of(definition_of(stored), expected);
     if (!difference.empty())
-        throw InputError("is not the file that its journal extends", difference,
-                         "Put that back, or remove the journal")
+        throw InputError("is not the file that its journal extends", difference, "Put that back, or remove the journal")
             .at(path);
     for (std::size_t s = 0; s < followed_.size(); ++s) {
         ScenarioResults& results = study_.scenarios[s];
@@ -154,8 +153,7 @@ Shard shard_of(const BlockRanges& blocks, std::int64_t trials) {
                : Shard{};
 }
 
-WatchedArm watched_arm(const ScenarioResults& results, const ArmResults& arm,
-                       const std::vector<std::size_t>& columns) {
+WatchedArm watched_arm(const ScenarioResults& results, const ArmResults& arm, const std::vector<std::size_t>& columns) {
     const TrialTotals& totals = arm.totals.trials;
     WatchedArm watched{arm.name,
                        totals.trials() - totals.counted() - totals.diverged(),

@@ -23,8 +23,7 @@ struct AtTruth {
     template <class Index>
     Linearised<Layout, Real, Index> operator()(Index j, const Sighting<Real>& sighting) const {
         const Vector2<Real> expected = rotate_back(estimated, predicted_difference<Layout>(mean, j));
-        return {sighting_rows_at<Layout>(truth->feature[j] - truth->position, j),
-                rotate(frame, sighting.z - expected)};
+        return {sighting_rows_at<Layout>(truth->feature[j] - truth->position, j), rotate(frame, sighting.z - expected)};
     }
 };
 

@@ -37,9 +37,8 @@ struct ScreenedStep {
 
     /// v_j of candidate i of those that are screened.
     auto values(int i) const {
-        return [&given = given, &parameters = parameters, i](auto j) CREDENCE_INLINE_LAMBDA {
-            return value_of<ranged>(given.work.screening, parameters, i, j);
-        };
+        return [&given = given, &parameters = parameters, i](auto j)
+                   CREDENCE_INLINE_LAMBDA { return value_of<ranged>(given.work.screening, parameters, i, j); };
     }
 };
 
@@ -52,10 +51,9 @@ struct DeterminantScreen : ScreenedStep<ranged, Layout, Real> {
 
     explicit DeterminantScreen(const Planning<Layout, Real>& planning) : Step{planning} {
         const double value = largest_sighting_value(parameters, given.sensor);
-        const Real lost =
-            Real(value) * enter_determinant_space<full>(given.work.still, heading, given.filter,
-                                                        given.control.squared_reach, given.layout,
-                                                        given.work.determinants);
+        const Real lost = Real(value) * enter_determinant_space<full>(given.work.still, heading, given.filter,
+                                                                      given.control.squared_reach, given.layout,
+                                                                      given.work.determinants);
         // kappa v nearer to 1 loses the digits of 1 - kappa v, the noise's share.
         reliable = lost <= Real(parameters.kappa * value > 1 - 1e-6 ? 0 : 1e8);
     }
@@ -123,9 +121,7 @@ struct EigenvalueScreen : ScreenedStep<ranged, Layout, Real> {
         return largest_eigenvalue_below(above_eigenvalues(P, given.layout, given.control.weights), all_lanes<Real>(),
                                         P, given.control.weights, given.layout, given.work.screening.covariance, x);
     }
-    Real bound(int first, int i) const {
-        return tangent.bound(this->move(first + i), given.layout, this->values(i));
-    }
+    Real bound(int first, int i) const { return tangent.bound(this->move(first + i), given.layout, this->values(i)); }
     Real threshold(const Real& cost) const {
         const Mask<Real> accurate = either(lost <= Real(4e4) * cost, cost <= Real(0));
         return select(accurate, cost * Real(1 + 1e-9), without_limit<Real>());

@@ -91,9 +91,7 @@ struct Choice {
     Real best = without_limit<Real>();
     CostScale scale = CostScale::linear;
 
-    Real equal_cost() const {
-        return scale == CostScale::linear ? best * Real(1 + 1e-12) : best + Real(1e-11);
-    }
+    Real equal_cost() const { return scale == CostScale::linear ? best * Real(1 + 1e-12) : best + Real(1e-11); }
 
     void offer(const Command<Real>& candidate, Real cost) { offer(candidate, cost, all_lanes<Real>()); }
 

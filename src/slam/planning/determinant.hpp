@@ -56,9 +56,8 @@ CREDENCE_INLINE Real touch(JointMatrix<Layout, Real>& J, const Reference<Layout,
         Real fall = Real(0);
         form.each_entry_of(form.constant, [&](auto r, auto c) CREDENCE_INLINE_LAMBDA {
             Real sum = Real(0);
-            each(Pose::row(j), Pose::row(j) + Pose::axes, [&](auto i) CREDENCE_INLINE_LAMBDA {
-                sum = fma(J.entry[r][i], J.entry[c][i], sum);
-            });
+            each(Pose::row(j), Pose::row(j) + Pose::axes,
+                 [&](auto i) CREDENCE_INLINE_LAMBDA { sum = fma(J.entry[r][i], J.entry[c][i], sum); });
             form.slope[j].entry[r][c] = square * sum;
             form.constant.entry[r][c] = fnma(at.value[j], form.slope[j].entry[r][c], form.constant.entry[r][c]);
         });

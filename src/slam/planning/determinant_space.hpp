@@ -49,9 +49,8 @@ struct PoseForm {
     template <class Use>
     static void each_entry_of(const Matrix&, const Use& use) {
         constexpr auto size = BoundedPose<Layout>::size;
-        each(zero, size, [&](auto r) CREDENCE_INLINE_LAMBDA {
-            each(r, size, [&](auto c) CREDENCE_INLINE_LAMBDA { use(r, c); });
-        });
+        each(zero, size,
+             [&](auto r) CREDENCE_INLINE_LAMBDA { each(r, size, [&](auto c) CREDENCE_INLINE_LAMBDA { use(r, c); }); });
     }
 };
 

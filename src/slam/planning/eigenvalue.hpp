@@ -37,8 +37,7 @@ CREDENCE_INLINE Real weighted_entry(const Symmetric<Real, capacity>& P, const La
 
 /// Above every eigenvalue: the root of the sum of A's squared entries.
 template <class Layout, class Real, int capacity>
-CREDENCE_FLAT Real above_eigenvalues(const Symmetric<Real, capacity>& P, const Layout& layout,
-                                     const Weights& weights) {
+CREDENCE_FLAT Real above_eigenvalues(const Symmetric<Real, capacity>& P, const Layout& layout, const Weights& weights) {
     const auto n = eigenvalue_rows(layout);
     const double root = __builtin_sqrt(weights.heading);
     const Real scale = Real(1) / weighted_trace(P, layout, weights);  // a square may underflow
@@ -116,9 +115,8 @@ CREDENCE_INLINE Real value_along(const Real* x, const Symmetric<Real, capacity>&
     Real form = Real(0), squares = Real(0);
     each(zero, n, [&](auto i) CREDENCE_INLINE_LAMBDA {
         Real sum = Real(0.5) * weighted_entry(P, layout, root, i, i) * x[i];
-        each(i + one, n, [&](auto j) CREDENCE_INLINE_LAMBDA {
-            sum = fma(weighted_entry(P, layout, root, i, j), x[j], sum);
-        });
+        each(i + one, n,
+             [&](auto j) CREDENCE_INLINE_LAMBDA { sum = fma(weighted_entry(P, layout, root, i, j), x[j], sum); });
         form = fma(Real(2) * sum, x[i], form);
         squares = fma(x[i], x[i], squares);
     });

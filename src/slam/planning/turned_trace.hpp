@@ -54,8 +54,7 @@ template <class Real>
 Command<Real> fetch_each(const ControlParameters& control, const Real& candidates) {
     Command<Real> command;
     for (int lane = 0; lane < lanes<Real>; ++lane)
-        if (lane_of(candidates, lane) >= 0)
-            fetch(control, static_cast<int>(lane_of(candidates, lane)), lane, command);
+        if (lane_of(candidates, lane) >= 0) fetch(control, static_cast<int>(lane_of(candidates, lane)), lane, command);
     return command;
 }
 

@@ -28,19 +28,18 @@ struct Deformable {
     }
     std::vector<DrawSource> sources(const Settings& settings) const {
         const NoiseSettings& noise = settings.noise;
-        const std::map<std::string, bool> drawn{
-            {"start", noise.initial_heading > 0 || noise.initial_position > 0},
-            {"odometry", noise.odometry > 0},
-            {"heading", settings.process == Process::heading && noise.heading > 0},
-            {"measurement", true},
-            {"walk", noise.walk > 0},
-            {"deformation", noise.deformation > 0},
-            {"edges", settings.truth.edge_noise == EdgeNoise::independent},
-            {"detection", settings.sensor.detection < 1},
-            {"outliers", noise.measurement_tails == Tails::contaminated},
-            {"placement", settings.features.placement != Placement::given},
-            {"bias", noise.odometry_bias > 0},
-            {"control", has_arm(settings, Controller::random)}};
+        const std::map<std::string, bool> drawn{{"start", noise.initial_heading > 0 || noise.initial_position > 0},
+                                                {"odometry", noise.odometry > 0},
+                                                {"heading", settings.process == Process::heading && noise.heading > 0},
+                                                {"measurement", true},
+                                                {"walk", noise.walk > 0},
+                                                {"deformation", noise.deformation > 0},
+                                                {"edges", settings.truth.edge_noise == EdgeNoise::independent},
+                                                {"detection", settings.sensor.detection < 1},
+                                                {"outliers", noise.measurement_tails == Tails::contaminated},
+                                                {"placement", settings.features.placement != Placement::given},
+                                                {"bias", noise.odometry_bias > 0},
+                                                {"control", has_arm(settings, Controller::random)}};
         std::vector<DrawSource> sources = slam_sources();
         std::erase_if(sources, [&](const DrawSource& source) { return !drawn.at(source.name); });
         return sources;

@@ -155,15 +155,14 @@ std::vector<std::string> estimators_to_offer() {
 }
 
 void add_control_keys(Keys& keys) {
-    keys.push_back(choice_key<FixedPath>("control.path", {"as-features", "straight", "circle"},
-                                         [](auto& s) -> auto& { return s.fixed_path; }));
-    add_later(keys, {"control.waypoints",
-                     "none, or the path of the controller waypoints as `x y, x y`, from 0 0 on (length)",
-                     [](DeformableSettings& s, const std::string& v) { s.waypoints = parse_waypoints(v); },
-                     [](const DeformableSettings& s) {
-                         return s.waypoints.empty() ? "none" : positions_text(s.waypoints);
-                     },
-                     {"none"}});
+    keys.push_back(choice_key<FixedPath>(
+        "control.path", {"as-features", "straight", "circle"}, [](auto& s) -> auto& { return s.fixed_path; }));
+    add_later(keys,
+              {"control.waypoints",
+               "none, or the path of the controller waypoints as `x y, x y`, from 0 0 on (length)",
+               [](DeformableSettings& s, const std::string& v) { s.waypoints = parse_waypoints(v); },
+               [](const DeformableSettings& s) { return s.waypoints.empty() ? "none" : positions_text(s.waypoints); },
+               {"none"}});
 }
 
 void add_planner_keys(Keys& keys) {

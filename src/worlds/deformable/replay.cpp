@@ -142,12 +142,10 @@ void check_covers(const NoiseRecord& record, const DeformableSettings& scenario,
     if (scenario.truth.edge_noise == EdgeNoise::independent && record.edges != edges)
         refuse("truth.edge_noise=independent needs `edge` [poses, " + std::to_string(edges) + ", 2]",
                "Record it, in graph order");
-    if (scenario.sensor.detection < 1)
-        refuse("a record has no detection draws", "Set sensor.detection=1");
+    if (scenario.sensor.detection < 1) refuse("a record has no detection draws", "Set sensor.detection=1");
     if (scenario.features.placement != Placement::given)
         refuse("a record has no draws of places", "Set features.placement=given");
-    if (scenario.noise.odometry_bias > 0)
-        refuse("a record has no bias of the odometry", "Set noise.odometry_bias=0");
+    if (scenario.noise.odometry_bias > 0) refuse("a record has no bias of the odometry", "Set noise.odometry_bias=0");
     if (scenario.noise.measurement_tails == Tails::contaminated)
         refuse("a record has no draws of outliers", "Set noise.measurement_tails=normal");
     if (scenario.budget.other != 0) refuse("a record has the draws of one world", "Set draws.other=none");

@@ -74,9 +74,8 @@ void simulate(const ProblemView& problem, const Arm& arm, const Batch& batch) {
 }
 
 std::size_t workspace_size(const ProblemView& problem, Estimator estimator) {
-    return with_trial(problem, estimator, [&](auto type) {
-        return BatchOf<typename decltype(type)::type>::workspace_size(problem);
-    });
+    return with_trial(problem, estimator,
+                      [&](auto type) { return BatchOf<typename decltype(type)::type>::workspace_size(problem); });
 }
 
 }  // namespace CREDENCE_TARGET

@@ -18,9 +18,7 @@ namespace {
 
 constexpr int largest_state = 1000, largest_innovation = 2000;
 
-bool is_word(const std::string& text) {
-    return !text.empty() && text.find_first_of(" \t\n") == std::string::npos;
-}
+bool is_word(const std::string& text) { return !text.empty() && text.find_first_of(" \t\n") == std::string::npos; }
 
 InputError refused(const Scenario& scenario, const std::string& why, const std::string& remedy) {
     return InputError("cannot use world " + printable(scenario.world), printable(why), remedy);

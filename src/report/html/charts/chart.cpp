@@ -129,11 +129,10 @@ void Svg::text(ChartPoint at, Anchor anchor, const std::string& text, const std:
 
 Html Svg::html(const std::string& id, const std::string& title, const std::string& description) const {
     const std::string safe = escaped(id).text();
-    return Html::trusted("<svg" + view_box() + " role=\"img\"" +
-                         attribute("aria-labelledby", safe + "-t " + safe + "-d") + ">\n<title" +
-                         attribute("id", safe + "-t") + ">" + escaped(title).text() + "</title>\n<desc" +
-                         attribute("id", safe + "-d") + ">" + escaped(description).text() + "</desc>\n" + body_ +
-                         "</svg>\n");
+    return Html::trusted(
+        "<svg" + view_box() + " role=\"img\"" + attribute("aria-labelledby", safe + "-t " + safe + "-d") + ">\n<title" +
+        attribute("id", safe + "-t") + ">" + escaped(title).text() + "</title>\n<desc" + attribute("id", safe + "-d") +
+        ">" + escaped(description).text() + "</desc>\n" + body_ + "</svg>\n");
 }
 
 Html Svg::sign(const std::string& classes) const {

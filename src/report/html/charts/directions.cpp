@@ -112,9 +112,8 @@ Html direction_charts(const Part& part) {
 }
 
 Html direction_tables(const Part& part) {
-    Table table(
-        part.scenario.name + ": directions, the squared error of combinations of the state over what P says",
-        {"arm, group", "direction", "ratio", "interval, corrected", "shares of the components, in sigmas"});
+    Table table(part.scenario.name + ": directions, the squared error of combinations of the state over what P says",
+                {"arm, group", "direction", "ratio", "interval, corrected", "shares of the components, in sigmas"});
     Table spectrum(part.scenario.name + ": all directions of the whole state",
                        {"arm", "ratios", "every direction within, 95 %", "from these trials"});
     for (const ArmReport* arm : part.arms) {

@@ -16,9 +16,7 @@
 
 namespace credence {
 
-void refuse(const LanePack& pack, const char* what) {
-    throw WorldMistake("world " + *pack.world + ": " + what + ".");
-}
+void refuse(const LanePack& pack, const char* what) { throw WorldMistake("world " + *pack.world + ": " + what + "."); }
 
 void leave(const LanePack&) { throw TrialEnds(); }
 
@@ -107,9 +105,7 @@ public:
 
     const SimulationShape& shape() const override { return shape_; }
     std::size_t workspace_size(std::size_t) const override { return target_.own_workspace_size(view_); }
-    void simulate(std::size_t arm, const Batch& batch) const override {
-        target_.simulate_own(view_of(arm), batch);
-    }
+    void simulate(std::size_t arm, const Batch& batch) const override { target_.simulate_own(view_of(arm), batch); }
 
     void check_repeats(std::uint64_t root_seed) const override {
         BlockMemory memory;

@@ -80,8 +80,7 @@ public:
         write(nees_ratio());
         write(largest_innovation > 0 ? total(view_.nis) / total(view_.nis + 1) : Real(__builtin_nan("")));
         write(total(view_.variance) / Real(steps_of_trial));
-        write(Real(0.5) *
-              (Real(state_size * log_two_pi) + (determinants_.log() + total(0)) / Real(steps_of_trial)));
+        write(Real(0.5) * (Real(state_size * log_two_pi) + (determinants_.log() + total(0)) / Real(steps_of_trial)));
         write(outcome_.status);
         write(outcome_.pose);
     }
@@ -216,9 +215,8 @@ private:
         }
         *series(view_.nis + 1) = rows;
         *series(view_.nis) =
-            step.rows > 0
-                ? whiten_checked(ObservedRows<Real>{{step.S, step.rows}, observed_}, step.rows).squared_norm
-                : Real(0);
+            step.rows > 0 ? whiten_checked(ObservedRows<Real>{{step.S, step.rows}, observed_}, step.rows).squared_norm
+                          : Real(0);
         if (!details_.on) return;
         for (int i = 0; i < largest_innovation; ++i) {
             const bool is_row = i < step.rows;
