@@ -24,7 +24,7 @@ struct StepSums {
         }
         std::vector<int> here;
         for (int j = 0; j < n; ++j)
-            if (step.here.empty() || step.here[static_cast<std::size_t>(j)]) here.push_back(j);
+            if (step.has(j)) here.push_back(j);
         const Eigen::VectorXd e = step.e(here);
         const Eigen::MatrixXd inverse =
             covariance_of(step, here).llt().solve(Eigen::MatrixXd::Identity(e.size(), e.size()));

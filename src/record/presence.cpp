@@ -115,9 +115,7 @@ std::string PresenceChecker::read_covariance(const RecordStep& step, CheckedStep
         return "the covariance is not finite";
     if (all) return {};
     checked.P.setZero(shape_.n, shape_.n);
-    for (std::size_t i = 0; i < here_.size(); ++i)
-        for (std::size_t j = 0; j < here_.size(); ++j)
-            checked.P(here_[i], here_[j]) = part_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    checked.P(here_, here_) = part_;
     return {};
 }
 

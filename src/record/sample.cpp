@@ -19,10 +19,7 @@ SampledSteps sampled_steps(const RecordReader& reader, const std::vector<int>& c
     std::int64_t run = -1, behind = -2;
     each_present_step(reader, [&](const RecordStep& step, const CheckedStep& checked) {
         if (!counted[static_cast<std::size_t>(step.trial)]) return;
-        if (!std::ranges::all_of(components, [&](int j) {
-                return checked.here.empty() || checked.here[static_cast<std::size_t>(j)] != 0;
-            }))
-            return;
+        if (!std::ranges::all_of(components, [&](int j) { return checked.has(j); })) return;
         const Eigen::MatrixXd P = covariance_of(checked, components);
         const bool follows = step.trial == run && step.step == behind;
         if (follows && !sample.steps.empty() && sample.steps.back().step + 1 == step.step)

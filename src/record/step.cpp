@@ -1,5 +1,7 @@
 #include "record/step.hpp"
 
+#include "base/formatted.hpp"
+
 #include <credence/detail/elementary.hpp>
 
 #include <algorithm>
@@ -8,14 +10,13 @@
 namespace credence {
 
 bool CheckedStep::whole(const ComponentGroup& group) const {
-    for (int i = 0; i < group.count && !here.empty(); ++i)
-        if (!here[static_cast<std::size_t>(group.component(i))]) return false;
+    for (int i = 0; i < group.count; ++i)
+        if (!has(group.component(i))) return false;
     return true;
 }
 
 std::string component_name(const RecordShape& shape, int j) {
-    return shape.components.empty() ? std::string("x") + std::to_string(j)
-                                    : shape.components[static_cast<std::size_t>(j)].name;
+    return shape.components.empty() ? formatted("x%d", j) : shape.components[static_cast<std::size_t>(j)].name;
 }
 
 StateSeries record_series(const RecordShape& shape) {
@@ -88,20 +89,13 @@ std::string StepEvaluator::evaluate_part(std::size_t b, const Matrix& P, const V
 void StepEvaluator::choose(const ComponentGroup& group, const CheckedStep& step) {
     members_.clear();
     for (int i = 0; i < group.count; ++i)
-        if (const int j = group.component(i); step.here.empty() || step.here[static_cast<std::size_t>(j)])
-            members_.push_back(j);
+        if (const int j = group.component(i); step.has(j)) members_.push_back(j);
 }
 
 /// Copies the part of e and, where there is one, of P that the chosen members have.
 void StepEvaluator::gather(const Eigen::VectorXd& e, const Eigen::MatrixXd& P) {
-    const auto d = static_cast<Eigen::Index>(members_.size());
-    part_e_.resize(d);
-    part_P_.resize(d, P.size() == 0 ? 0 : d);
-    for (Eigen::Index i = 0; i < d; ++i) {
-        part_e_(i) = e(members_[static_cast<std::size_t>(i)]);
-        for (Eigen::Index j = 0; j < part_P_.cols(); ++j)
-            part_P_(i, j) = P(members_[static_cast<std::size_t>(i)], members_[static_cast<std::size_t>(j)]);
-    }
+    part_e_ = e(members_);
+    if (P.size() > 0) part_P_ = P(members_, members_);
 }
 
 std::string StepEvaluator::evaluate_group(std::size_t b, const CheckedStep& step, double* all_series) {
@@ -143,7 +137,7 @@ std::string StepEvaluator::evaluate_variances(std::size_t b, const CheckedStep& 
     double square = 0, variance = 0, score = 0;
     for (int i = 0; i < group.count; ++i) {
         const int j = group.component(i);
-        if (!step.here.empty() && !step.here[static_cast<std::size_t>(j)]) continue;
+        if (!step.has(j)) continue;
         if (!(step.variances(j) > 0)) return step.variances(j) < 0 ? "a variance is negative" : "a variance is 0";
         square += step.e(j) * step.e(j);
         variance += step.variances(j);
@@ -160,7 +154,7 @@ std::string StepEvaluator::evaluate_variances(std::size_t b, const CheckedStep& 
 void StepEvaluator::standardise(const CheckedStep& step, double* all_series) {
     for (int j = 0; j < shape_.n; ++j) {
         const std::size_t at = static_cast<std::size_t>(j), series = places_.standardised_error + at;
-        const bool here = step.here.empty() || step.here[at];
+        const bool here = step.has(j);
         double variance = 0;
         if (here && step.P.size() > 0) variance = step.P(j, j);
         else if (here && shape_.has_variances) variance = step.variances(j);

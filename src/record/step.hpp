@@ -115,6 +115,7 @@ struct CheckedStep {
     std::vector<Eigen::MatrixXd> own;   ///< [groups] a group's own covariance
     std::vector<double> nees;           ///< [groups] a group's NEES as given; NaN where it has none at this step
 
+    bool has(int component) const { return here.empty() || here[static_cast<std::size_t>(component)]; }
     /// Whether all components of the group are in the state.
     bool whole(const ComponentGroup& group) const;
 };

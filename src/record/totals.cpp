@@ -141,7 +141,7 @@ void RecordTotals::keep_details(std::int64_t trial, std::size_t k, const Checked
     arm().nees[at] = !dimensions_.empty() && dimensions_[k] < shape_.n ? nan : series(0, k);
     for (Eigen::Index j = 0; j < checked.e.size(); ++j)
         arm().errors[at * size(shape_.n) + static_cast<std::size_t>(j)] =
-            checked.here.empty() || checked.here[static_cast<std::size_t>(j)] ? checked.e(j) : nan;
+            checked.has(static_cast<int>(j)) ? checked.e(j) : nan;
 }
 
 void RecordTotals::end_trial(std::int64_t trial) {

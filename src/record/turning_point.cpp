@@ -38,7 +38,7 @@ std::vector<double> truth_sigmas(const RecordReader& reader, const std::vector<i
     const RecordShape& shape = reader.shape();
     const auto each = [&](const auto& use) {
         each_present_step(reader, [&](const RecordStep& step, const CheckedStep& checked) {
-            if (std::ranges::all_of(components, [&](int j) { return checked.here[static_cast<std::size_t>(j)] != 0; }))
+            if (std::ranges::all_of(components, [&](int j) { return checked.has(j); }))
                 use(static_cast<std::size_t>(step.trial), Eigen::VectorXd(checked.e(components)),
                     covariance_of(checked, components));
         });
