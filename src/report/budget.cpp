@@ -67,8 +67,6 @@ Json part_json(const BudgetPart& part) {
             {"ratio", part.ratio}};
 }
 
-}  // namespace
-
 std::string budget_text(const BudgetReport& report) {
     std::string text;
     for (const ArmBudget& arm : report.arms) {
@@ -117,6 +115,8 @@ std::string budget_csv(const BudgetReport& report) {
             }
     return text;
 }
+
+}  // namespace
 
 std::string budget_in(const BudgetReport& report, const std::string& format) {
     return format == "json" ? budget_json(report) : format == "csv" ? budget_csv(report) : budget_text(report);

@@ -16,12 +16,7 @@ struct BudgetReport {
     std::string of;  ///< empty: the first of one unit
 };
 
-std::string budget_text(const BudgetReport& report);
-/// An object for each scenario and arm.
-std::string budget_json(const BudgetReport& report);
-/// A row for each scenario, arm, part and source.
-std::string budget_csv(const BudgetReport& report);
-/// `text`, `json` or `csv`
+/// `text`; `json`: an object for each scenario and arm; or `csv`: a row for each scenario, arm, part and source.
 std::string budget_in(const BudgetReport& report, const std::string& format);
 
 }  // namespace credence
