@@ -5,7 +5,6 @@
 #include "base/nan.hpp"
 #include "numeric/chi_square.hpp"
 #include "scenario/state_series.hpp"
-#include "worlds/own/columns.hpp"
 #include "oracle/lag_products.hpp"
 #include "record/moments.hpp"
 #include "record/step.hpp"
@@ -89,8 +88,9 @@ public:
         if (step_ != case_.steps())
             throw std::logic_error("world " + case_.scenario.world + ": a trial took " + std::to_string(step_) +
                                    " steps, not " + std::to_string(case_.steps()) + ".");
+        const auto is_whole = [](double value) { return value == std::nearbyint(value) && std::abs(value) < 0x1p31; };
         for (std::size_t c = 0; c < own_.size(); ++c) {
-            if (case_.report.columns[c].type != ColumnType::integer || is_stored_integer(own_[c])) continue;
+            if (case_.report.columns[c].type != ColumnType::integer || is_whole(own_[c])) continue;
             status_ = Status::non_finite;
             status_pose_ = static_cast<int>(step_);
         }

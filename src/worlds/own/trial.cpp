@@ -8,15 +8,20 @@
 
 #include "base/nan.hpp"
 
-#include "worlds/own/columns.hpp"
-
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace credence {
 
 namespace {
 
 constexpr int largest_state = 1000, largest_innovation = 2000;
+
+/// Whether files hold a value of an integer column as it is.
+bool is_stored_integer(double value) {
+    return std::abs(value) <= std::numeric_limits<std::int32_t>::max() && value == std::nearbyint(value);
+}
 
 bool is_word(const std::string& text) { return !text.empty() && text.find_first_of(" \t\n") == std::string::npos; }
 
