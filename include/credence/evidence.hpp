@@ -54,7 +54,7 @@ struct GroupEvidence {
     std::vector<Coverage> coverage;
     std::vector<double> variance_ratio;        ///< var(NEES)/(2 dim); 1 for chi-square
     Accuracy accuracy;
-    /// Bound on what rounding may have done to NEES, as a share of it [statistics/moments/conditioning.hpp]; 0 where
+    /// Bound on what rounding may have done to NEES, as a share of it [rounding_bound]; 0 where
     /// unknown.
     double rounding = 0;
     double largest = 0;  ///< of `run`'s numbers, of the detailed trials

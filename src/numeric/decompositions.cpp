@@ -5,6 +5,8 @@
 #include <credence/detail/elementary.hpp>
 
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace credence {
 
@@ -77,6 +79,15 @@ bool is_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix, doubl
     CholeskyFactor any;
     double rounding = 0;
     return factor_checked(matrix, epsilon, any, rounding).empty();
+}
+
+double rounding_bound(const Eigen::MatrixXd& P, double epsilon) {
+    std::vector<Eigen::Index> there;
+    for (Eigen::Index j = 0; j < P.rows(); ++j)
+        if (P(j, j) > 0) there.push_back(j);
+    if (there.empty()) return 0;
+    const double smallest = smallest_eigenvalue(P(there, there)), d = static_cast<double>(there.size());
+    return smallest > 0 ? d * epsilon / smallest : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace credence

@@ -50,11 +50,21 @@ Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& symmetric);
 // Whether symmetric matrices are positive definite beyond rounding, of values with the relative spacing `epsilon`.
 
 /// Factors S; what is wrong with it, where it is not positive definite. Pivots that are not small need no eigenvalues.
-/// `rounding` becomes the bound on the relative error of nu'S^-1nu [statistics/moments/conditioning.hpp]; 0 for such
+/// `rounding` becomes the bound on the relative error of nu'S^-1nu [rounding_bound]; 0 for such
 /// pivots.
 std::string factor_checked(const Eigen::Ref<const Eigen::MatrixXd>& S, double epsilon, CholeskyFactor& factor,
                            double& rounding);
 
 bool is_positive_definite(const Eigen::Ref<const Eigen::MatrixXd>& matrix, double epsilon);
+
+// Conditioning: how much rounding alone may change a number that needs the inverse of a covariance.
+
+/// A claim is made only where rounding may change its number by at most this share of the claim's margin.
+inline constexpr double rounding_share = 0.1;
+
+/// Bound on the relative error of e'P^-1e for a covariance P [d, d] whose numbers have the relative spacing `epsilon`:
+/// d epsilon over the smallest eigenvalue of its correlation matrix, whatever the units [Higham 2002, 7.2 and 10.1].
+/// Components without variance are left out. Infinite where P is singular.
+double rounding_bound(const Eigen::MatrixXd& P, double epsilon);
 
 }  // namespace credence

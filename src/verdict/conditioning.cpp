@@ -1,7 +1,7 @@
 // Conditioning: what rounding may have done to NEES, from the mean covariance of the detailed trials, and of a record
 // from the covariances of its steps.
 
-#include "statistics/moments/conditioning.hpp"
+#include "numeric/decompositions.hpp"
 
 #include <algorithm>
 #include <cmath>

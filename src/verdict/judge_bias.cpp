@@ -1,6 +1,6 @@
 // The verdict's bias: mean errors against a margin, over all steps.
 
-#include "statistics/moments/bias.hpp"
+#include "statistics/mean_bounds.hpp"
 #include "verdict/judgement.hpp"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // The verdict's directions: which combination of the state has errors that P does not allow for.
 
 #include "base/formatted.hpp"
-#include "statistics/moments/bias.hpp"
+#include "statistics/mean_bounds.hpp"
 #include "verdict/judgement.hpp"
 
 #include <algorithm>

@@ -2,7 +2,7 @@
 // be.
 
 #include "statistics/autocorrelation.hpp"
-#include "statistics/moments/bias.hpp"
+#include "statistics/mean_bounds.hpp"
 #include "statistics/moments/trial_moments.hpp"
 #include "verdict/judgement.hpp"
 

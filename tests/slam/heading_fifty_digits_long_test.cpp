@@ -5,7 +5,7 @@
 #include "fifty_digits_filter.hpp"
 
 #include "slam/estimators/estimator.hpp"
-#include "statistics/moments/conditioning.hpp"
+#include "numeric/decompositions.hpp"
 
 namespace credence::test::heading_fifty_digits_long_test {
 

@@ -9,7 +9,7 @@
 #include "slam/trial/workspace.hpp"
 #include "slam/planning/controller.hpp"
 #include "slam/update.hpp"
-#include "statistics/moments/conditioning.hpp"
+#include "numeric/decompositions.hpp"
 
 #include <boost/math/constants/constants.hpp>
 

@@ -4,7 +4,7 @@
 
 #include "images.hpp"
 
-#include "statistics/moments/conditioning.hpp"
+#include "numeric/decompositions.hpp"
 
 #include <optional>
 #include <vector>
@@ -96,7 +96,7 @@ inline bool is_lost(const Run& run) { return !(run.series("nees").maxCoeff() < 1
 
 /// What rounding may do to all of this. An update that leaves a share 1/loss of a variance leaves rounding errors of
 /// loss epsilon in P, and NEES multiplies them by n over the smallest eigenvalue of the correlation matrix
-/// [statistics/moments/conditioning.hpp]; the errors are small differences of coordinates, which have `size` standard
+/// [numeric/decompositions.hpp]; the errors are small differences of coordinates, which have `size` standard
 /// deviations; and all poses before have added their share.
 inline double rounding_of(const Run& run) {
     constexpr double epsilon = std::numeric_limits<double>::epsilon();

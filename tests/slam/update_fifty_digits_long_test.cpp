@@ -5,7 +5,7 @@
 #include "fifty_digits_filter.hpp"
 
 #include "slam/update.hpp"
-#include "statistics/moments/conditioning.hpp"
+#include "numeric/decompositions.hpp"
 
 namespace credence::test::update_fifty_digits_long_test {
 

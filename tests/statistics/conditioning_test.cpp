@@ -1,6 +1,6 @@
 // The bound on what rounding may do to e'P^-1e.
 
-#include "statistics/moments/conditioning.hpp"
+#include "numeric/decompositions.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "statistics/moments/advice.hpp"
-#include "statistics/moments/bias.hpp"
+#include "statistics/mean_bounds.hpp"
 #include "statistics/moments/directions.hpp"
 #include "statistics/verdict_cases.hpp"
 #include "statistics/whiteness.hpp"

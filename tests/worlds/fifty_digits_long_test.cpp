@@ -5,7 +5,7 @@
 #include "fifty_digits.hpp"
 #include "record_support.hpp"
 
-#include "statistics/moments/conditioning.hpp"
+#include "numeric/decompositions.hpp"
 #include "record/step.hpp"
 
 #include <credence/report.hpp>

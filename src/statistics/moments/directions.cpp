@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "numeric/decompositions.hpp"
-#include "statistics/moments/conditioning.hpp"
 
 namespace credence {
 

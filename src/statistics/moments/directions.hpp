@@ -66,7 +66,7 @@ DirectionsAccepted accept_directions(const GroupMoments& state, const FoldSums& 
 
 /// The coordinates in which rounding may change a ratio by a tenth of the margin at most: an orthonormal basis
 /// [d, d - left_out] of the eigenvectors of the mean standardised P whose eigenvalue is at least
-/// d epsilon / (rounding_share margin) [conditioning.hpp].
+/// d epsilon / (rounding_share margin) [numeric/decompositions.hpp].
 Eigen::MatrixXd resolved_basis(const Eigen::MatrixXd& sum_of_C, const DirectionLimits& limits);
 
 }  // namespace credence
