@@ -4,8 +4,6 @@
 #include "judge.hpp"
 
 #include "cli/command.hpp"
-#include "cli/file_kind.hpp"
-#include "cli/version.hpp"
 #include "record/read.hpp"
 
 #include <credence/detail/store.hpp>

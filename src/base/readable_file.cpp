@@ -1,14 +1,24 @@
 #include "base/readable_file.hpp"
 
-#include "base/descriptor.hpp"
-
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
+#include <system_error>
 
 namespace credence {
+
+Descriptor::~Descriptor() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+std::string words_for(int error) {
+    std::string words = std::generic_category().message(error);
+    if (!words.empty()) words.front() = static_cast<char>(std::tolower(static_cast<unsigned char>(words.front())));
+    return words;
+}
 
 Unreadable::Unreadable(int error)
     : std::runtime_error(error == 0 ? "not a regular file" : words_for(error)), error_(error) {}

@@ -1,10 +1,27 @@
 #pragma once
-// Reading files: only regular files are opened, and errors of the system are reported by their names.
+// File descriptors, the system's messages for its errors, and reading files: only regular ones are opened.
 
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace credence {
+
+/// A file descriptor that closes itself.
+class Descriptor {
+public:
+    explicit Descriptor(int descriptor) : descriptor_(descriptor) {}
+    Descriptor(Descriptor&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+    Descriptor& operator=(Descriptor&&) = delete;
+    ~Descriptor();
+    int get() const { return descriptor_; }
+
+private:
+    int descriptor_;
+};
+
+/// The system's own message, such as `no space left on device`.
+std::string words_for(int error);
 
 /// Why a file cannot be read. The message is the system's own, such as `input/output error`.
 class Unreadable : public std::runtime_error {

@@ -3,8 +3,6 @@
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 
-#include "base/program_name.hpp"
-
 namespace credence {
 
 const Wording program_wording{[](const std::string& name, const std::string& value) {

@@ -1,8 +1,6 @@
-#include "cli/file_kind.hpp"
 #include "cli/process/progress.hpp"
 #include "cli/run/request.hpp"
 
-#include "base/program_name.hpp"
 #include "base/wording.hpp"
 #include "report/budget.hpp"
 

@@ -1,15 +1,12 @@
 #include "cli/command.hpp"
 
-#include "base/choice.hpp"
-#include "base/program_name.hpp"
 #include "base/wording.hpp"
 #include "files/record.hpp"
 #include "files/system/durable_file.hpp"
-#include "worlds/notes.hpp"
 #include "worlds/values.hpp"
 
 #include <credence/error.hpp>
-#include <credence/detail/store.hpp>
+#include <credence/detail/worlds.hpp>
 #include <credence/text.hpp>
 
 #include <boost/program_options.hpp>
@@ -20,6 +17,8 @@
 #include <iostream>
 #include <limits>
 #include <new>
+#include <numbers>
+#include <set>
 #include <sstream>
 
 namespace credence::cli {
@@ -104,6 +103,23 @@ double parse_open_share(const Parsed& parsed, const std::string& option, const s
     return share;
 }
 
+/// One sentence for each key that has one: a standard deviation of an angle above 1 rad may have been meant in degrees.
+std::vector<std::string> notes_on(const std::vector<Scenario>& scenarios) {
+    constexpr double large = 1;  // rad: beyond it, a normal angle wraps
+    std::vector<std::string> notes;
+    std::set<std::string> noted;  // keys: a sweep may have many such values of one
+    for (const Scenario& scenario : scenarios)
+        for (const DescribedKey& key : world_of(scenario).keys()) {
+            if (key.sigma_unit != "rad") continue;
+            const std::string value = value_of(scenario, key.key);
+            const double sigma = to_number(value).value_or(0);
+            if (!(sigma > large) || !noted.insert(key.key).second) continue;
+            notes.push_back(key.key + "=" + value + " is a standard deviation in rad. If it is in degrees, give " +
+                            to_text(sigma * std::numbers::pi / 180) + ".");
+        }
+    return notes;
+}
+
 }  // namespace
 
 std::optional<std::string> Parsed::text(const std::string& option) const {
@@ -168,8 +184,7 @@ std::vector<SweepAxis> Parsed::sweep() const {
 
 std::optional<Parsed> parse(const Command& command, const std::vector<std::string>& arguments) {
     const po::options_description description = described(command);
-    Parsed parsed;
-    parsed.command = &command;
+    Parsed parsed{{}, {}, &command, {}};
     try {
         namespace style = po::command_line_style;
         const int strict = style::unix_style & ~style::allow_guessing;
@@ -195,10 +210,7 @@ std::optional<Parsed> parse(const Command& command, const std::vector<std::strin
 }
 
 Parsed parsed_of(const Command& command, std::vector<std::string> arguments, Values values) {
-    Parsed parsed;
-    parsed.arguments = std::move(arguments);
-    parsed.values = std::move(values);
-    parsed.command = &command;
+    Parsed parsed{std::move(arguments), std::move(values), &command, {}};
     take_suffix(command, parsed);
     return parsed;
 }

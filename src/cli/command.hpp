@@ -3,6 +3,7 @@
 
 #include <credence/ini.hpp>
 #include <credence/report.hpp>
+#include <credence/detail/store.hpp>
 
 #include <functional>
 #include <map>
@@ -127,6 +128,28 @@ Rendering compared(const Parsed& parsed);
 Rendering budgeted(const Parsed& parsed);
 /// Writes what is made in the format that is asked for, and returns the exit code.
 int give(const Parsed& parsed, Rendering (*make)(const Parsed&));
+
+// The kind of a file that a command was given: a wrong one is refused with the name of the command that reads it.
+
+/// `unknown` includes files that cannot be read: the command itself reports why.
+enum class FileKind { scenario, results, trajectories, record, noise, journal, unknown };
+
+/// Of a record also by the path FILE:ARM.
+FileKind kind_of(const std::string& path);
+
+/// Throws InputError, naming the command that reads the file, where the file is of a known kind that is not one of
+/// `accepted`, the first of which is the command's main kind.
+void check_kind(const std::string& path, const std::vector<FileKind>& accepted);
+
+// Facts of the build, for --version and for /run of every file.
+
+std::string version_text();
+
+/// `credence VERSION, git revision REVISION`
+std::string made_by();
+
+/// Version, git revision, compiler, flags, processor, instruction set, lane width.
+RunFacts build_facts();
 
 // The subcommands.
 const Command& run_command();

@@ -8,10 +8,8 @@
 #include <utility>
 
 #include "files/record.hpp"
-#include "base/program_name.hpp"
+#include "base/wording.hpp"
 #include "cli/command.hpp"
-#include "cli/file_kind.hpp"
-#include "cli/version.hpp"
 
 namespace credence::cli {
 

@@ -1,4 +1,4 @@
-#include "cli/file_kind.hpp"
+#include "cli/command.hpp"
 
 #include "files/hdf5/read.hpp"
 #include "files/record.hpp"

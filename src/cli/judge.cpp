@@ -1,5 +1,4 @@
 #include "cli/command.hpp"
-#include "cli/file_kind.hpp"
 #include "cli/process/progress.hpp"
 #include "files/record.hpp"
 

@@ -1,8 +1,6 @@
 #include "cli/command.hpp"
-#include "cli/file_kind.hpp"
 #include "cli/process/limits.hpp"
 #include "cli/process/progress.hpp"
-#include "cli/version.hpp"
 
 #include <credence/error.hpp>
 #include "files/merge/merge.hpp"

@@ -3,9 +3,7 @@
 #include "cli/command.hpp"
 #include "cli/process/limits.hpp"
 #include "cli/process/progress.hpp"
-#include "cli/version.hpp"
 
-#include "base/program_name.hpp"
 #include "base/wording.hpp"
 #include <credence/error.hpp>
 #include <credence/program.hpp>

@@ -1,6 +1,4 @@
 #include "cli/command.hpp"
-#include "cli/file_kind.hpp"
-#include "cli/version.hpp"
 
 #include <credence/error.hpp>
 #include <credence/ini.hpp>

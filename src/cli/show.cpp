@@ -1,5 +1,4 @@
 #include "cli/command.hpp"
-#include "cli/file_kind.hpp"
 
 #include <credence/error.hpp>
 #include <credence/text.hpp>

@@ -1,4 +1,4 @@
-#include "cli/version.hpp"
+#include "cli/command.hpp"
 
 #include "build_info.hpp"  // made by CMake
 
@@ -11,7 +11,7 @@
 
 #include <fstream>
 
-namespace credence {
+namespace credence::cli {
 
 namespace {
 
@@ -49,4 +49,4 @@ std::string version_text() {
     return text + "  schema_version: " + std::to_string(schema_version) + "\n";
 }
 
-}  // namespace credence
+}  // namespace credence::cli

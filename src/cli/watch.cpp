@@ -1,8 +1,7 @@
 #include "cli/command.hpp"
-#include "cli/file_kind.hpp"
 #include "cli/process/interrupt.hpp"
 
-#include "base/program_name.hpp"
+#include "base/wording.hpp"
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 #include "report/watch/watch.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 // Where a record is read from: a file, or arrays in memory. Its datasets and attributes have the names of the file.
 
-#include "base/extents.hpp"
 #include "base/placed_error.hpp"
 
 #include <credence/record.hpp>

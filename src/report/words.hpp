@@ -3,7 +3,7 @@
 
 #include <credence/report.hpp>
 
-#include "base/program_name.hpp"
+#include "base/wording.hpp"
 #include "report/table.hpp"
 
 #include <string>

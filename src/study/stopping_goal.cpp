@@ -2,7 +2,6 @@
 
 #include "study/stopping.hpp"
 
-#include "base/choice.hpp"
 #include "base/wording.hpp"
 
 #include <credence/error.hpp>

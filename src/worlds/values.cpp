@@ -1,6 +1,5 @@
 #include "worlds/values.hpp"
 
-#include "base/choice.hpp"
 #include "base/wording.hpp"
 
 #include <credence/detail/draws.hpp>

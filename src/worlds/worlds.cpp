@@ -1,6 +1,6 @@
 #include <credence/detail/worlds.hpp>
 
-#include "base/choice.hpp"
+#include "base/wording.hpp"
 #include "worlds/deformable/deformable.hpp"
 #include <credence/error.hpp>
 #include "worlds/explore/explore.hpp"

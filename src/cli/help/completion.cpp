@@ -1,10 +1,9 @@
 // The script that completes command lines in bash, generated from the program's own descriptions of its commands.
 
 #include "cli/command.hpp"
-#include "cli/version.hpp"
 #include "embedded/completion.hpp"
 
-#include "base/program_name.hpp"
+#include "base/wording.hpp"
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 #include <credence/detail/worlds.hpp>

@@ -1,8 +1,6 @@
 #include "cli/run/request.hpp"
 
 #include "cli/run/launcher.hpp"
-#include "cli/version.hpp"
-#include "cli/file_kind.hpp"
 #include "files/system/durable_file.hpp"
 #include "study/budget.hpp"
 #include "base/wording.hpp"
@@ -42,6 +40,19 @@ Start start_of(const Parsed& parsed) {
     return parsed.has("resume") ? Start::resume : parsed.has("overwrite") ? Start::overwrite : Start::fresh;
 }
 
+/// Takes the study from the file that is resumed.
+void take_stored(const Parsed& parsed, RunRequest& request) {
+    for (const char* option : {"set", "sweep", "seed", "keep", "budget"})
+        if (parsed.has(option))
+            throw InputError(as_option(option) + " needs a scenario",
+                             "without one, the study in the file is resumed as it is",
+                             "Name one or more SCENARIO.ini, or leave it out");
+    StudyDefinition stored = stored_definition(request.output);
+    request.scenarios = std::move(stored.scenarios);
+    request.root_seed = stored.root_seed;
+    request.keep = stored.keep;
+}
+
 }  // namespace
 
 std::vector<Scenario> scenarios_of(const Parsed& parsed, std::optional<KeptErrors> kept) {
@@ -61,23 +72,6 @@ std::vector<Scenario> scenarios_of(const Parsed& parsed, std::optional<KeptError
         }
     return scenarios;
 }
-
-namespace {
-
-/// Takes the study from the file that is resumed.
-void take_stored(const Parsed& parsed, RunRequest& request) {
-    for (const char* option : {"set", "sweep", "seed", "keep", "budget"})
-        if (parsed.has(option))
-            throw InputError(as_option(option) + " needs a scenario",
-                             "without one, the study in the file is resumed as it is",
-                             "Name one or more SCENARIO.ini, or leave it out");
-    StudyDefinition stored = stored_definition(request.output);
-    request.scenarios = std::move(stored.scenarios);
-    request.root_seed = stored.root_seed;
-    request.keep = stored.keep;
-}
-
-}  // namespace
 
 std::optional<KeptErrors> kept_errors(const Parsed& parsed, const std::string& option) {
     if (!parsed.has(option)) return std::nullopt;

@@ -1,9 +1,7 @@
 #include "cli/process/interrupt.hpp"
 #include "cli/process/progress.hpp"
 #include "cli/run/request.hpp"
-#include "cli/version.hpp"
 
-#include "base/program_name.hpp"
 #include "base/wording.hpp"
 #include <credence/error.hpp>
 #include <credence/report.hpp>

@@ -2,7 +2,6 @@
 
 #include "files/hdf5/read.hpp"
 
-#include "base/extents.hpp"
 #include "files/hdf5/write.hpp"
 
 #include <algorithm>

@@ -1,7 +1,5 @@
 #include "files/system/system_file.hpp"
 
-#include "base/readable_file.hpp"
-
 #include <credence/error.hpp>
 
 #include <fcntl.h>

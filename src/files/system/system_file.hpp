@@ -1,7 +1,7 @@
 #pragma once
 // The system's file operations, and messages for its errors.
 
-#include "base/descriptor.hpp"
+#include "base/readable_file.hpp"
 #include "base/signal_handler.hpp"
 
 #include <sys/stat.h>

@@ -4,7 +4,6 @@
 
 #include <credence/detail/deformable_settings.hpp>
 
-#include "base/extents.hpp"
 #include "files/hdf5/read.hpp"
 
 #include <cmath>

@@ -2,7 +2,6 @@
 
 #include "report/compare/choice.hpp"
 
-#include "base/choice.hpp"
 #include "base/wording.hpp"
 
 #include <algorithm>

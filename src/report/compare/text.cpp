@@ -6,7 +6,7 @@
 #include "report/compare/compare.hpp"
 #include <credence/text.hpp>
 
-#include "base/program_name.hpp"
+#include "base/wording.hpp"
 #include "report/compare/choice.hpp"
 #include "report/format.hpp"
 #include "report/table.hpp"

@@ -2,7 +2,7 @@
 
 #include <credence/text.hpp>
 
-#include "base/program_name.hpp"
+#include "base/wording.hpp"
 #include "embedded/terms.hpp"
 #include "report/html/page.hpp"
 #include "report/sweep.hpp"

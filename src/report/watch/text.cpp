@@ -4,7 +4,7 @@
 
 #include <credence/error.hpp>
 
-#include "base/program_name.hpp"
+#include "base/wording.hpp"
 #include "report/format.hpp"
 #include "report/table.hpp"
 #include "report/data/json.hpp"

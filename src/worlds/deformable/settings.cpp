@@ -3,7 +3,7 @@
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 
-#include "base/choice.hpp"
+#include "base/wording.hpp"
 #include "worlds/values.hpp"
 
 #include <algorithm>
