@@ -75,19 +75,18 @@ Html provenance(const Report& report, const PageOrigin& origin) {
         add(table, name, value);
     }
     add(table, "page made by", origin.made_by);
-    return "<section aria-labelledby=\"provenance\">\n<h2 id=\"provenance\">Provenance</h2>\n"_html + html_of(table) +
-           "</section>\n"_html;
+    return section("provenance"_html, "Provenance"_html, html_of(table));
 }
 
 Html reproduction(const Report& report, const PageOrigin& origin) {
     const std::string log = fact(origin.run, "log"), file = log.empty() ? shell_word(origin.file) : log,
                       options = options_of(report);
-    Html html = "<section aria-labelledby=\"again\">\n<h2 id=\"again\">How to reproduce it</h2>\n"_html;
+    Html html;
     if (!report.root_seed) {
         html += "<p>This page, and the same as text or with every digit:</p>\n"_html +
                 command(program_name() + " judge " + file + options + " --format html -o page.html") +
                 command(program_name() + " judge " + file + options + " --format json");
-        return html + "</section>\n"_html;
+        return section("again"_html, "How to reproduce it"_html, html);
     }
     if (const std::string line = fact(origin.run, "command_line"); !line.empty())
         html += "<p>The file was made by</p>\n"_html + command(line);
@@ -102,7 +101,7 @@ Html reproduction(const Report& report, const PageOrigin& origin) {
     html += "<p>This page, and the same with every digit:</p>\n"_html +
             command(program_name() + " report " + file + options + " --format html -o page.html") +
             command(program_name() + " report " + file + options + " --format json");
-    return html + "</section>\n"_html;
+    return section("again"_html, "How to reproduce it"_html, html);
 }
 
 Html terms() { return Html::trusted(embedded::terms); }

@@ -21,18 +21,12 @@ std::string_view entity(const char& c) {
 /// A symbol for each verdict, so that it can be read without colour.
 Html symbol_of(Verdict verdict) {
     switch (verdict) {
-        case Verdict::consistent:
-            return "&#10003;"_html;  // check mark
-        case Verdict::optimistic:
-            return "&#9650;"_html;  // triangle up: NEES above 1
-        case Verdict::pessimistic:
-            return "&#9660;"_html;  // triangle down: NEES below 1
-        case Verdict::mixed:
-            return "&#9670;"_html;  // diamond
-        case Verdict::failed:
-            return "&#10007;"_html;  // ballot x
-        case Verdict::undecided:
-            break;
+        case Verdict::consistent: return "&#10003;"_html;  // check mark
+        case Verdict::optimistic: return "&#9650;"_html;   // triangle up: NEES above 1
+        case Verdict::pessimistic: return "&#9660;"_html;  // triangle down: NEES below 1
+        case Verdict::mixed: return "&#9670;"_html;        // diamond
+        case Verdict::failed: return "&#10007;"_html;      // ballot x
+        case Verdict::undecided: break;
     }
     return "?"_html;
 }

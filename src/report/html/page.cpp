@@ -82,10 +82,7 @@ Html sweeps(const Report& report) {
         const Html id = escaped("sweep:" + std::to_string(number++));
         Html tables;
         for (const SweptTable& one : tables_of(report, grid)) tables += html_of(one.table);
-        html += "<section aria-labelledby=\""_html + id + "\">\n"_html +
-                element("h2", escaped("Sweep of " + grid.of + " over " + joined(grid.keys)),
-                        "id=\""_html + id + "\""_html) +
-                "\n"_html + tables + "</section>\n"_html;
+        html += section(id, escaped("Sweep of " + grid.of + " over " + joined(grid.keys)), tables);
     }
     return html;
 }

@@ -30,6 +30,12 @@ std::string document(const std::string& title, const Html& header, const Html& m
 /// The id of a scenario's section.
 inline Html section_id(const std::string& scenario) { return "scenario:"_html + escaped(scenario); }
 
+/// A section with its heading.
+inline Html section(const Html& id, const Html& heading, const Html& body) {
+    return element("section", "\n"_html + element("h2", heading, "id=\""_html + id + "\""_html) + "\n"_html + body,
+                   "aria-labelledby=\""_html + id + "\""_html) + "\n"_html;
+}
+
 /// The number of arms with each verdict, in one sentence.
 std::string verdict_counts(const Report& report);
 

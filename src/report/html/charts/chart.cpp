@@ -33,21 +33,14 @@ constexpr std::size_t colours = 6, distinct = 2 * colours;
 bool hollow(std::size_t series) { return series % distinct >= colours; }
 
 /// The outline of a mark about the origin; a colour's second series has another shape than its first.
-std::string outline(std::size_t series) {
-    switch ((series + (hollow(series) ? colours / 2 : 0)) % colours) {
-        case 1:
-            return "M0-4.4L4.4 0 0 4.4-4.4 0Z";
-        case 2:
-            return "M-3-3H3V3H-3Z";
-        case 3:
-            return "M0-4L4 3H-4Z";
-        case 4:
-            return "M0 4L4-3H-4Z";
-        case 5:
-            return "M-1.4-4H1.4V-1.4H4V1.4H1.4V4H-1.4V1.4H-4V-1.4H-1.4Z";
-        default:
-            return "M-3.2 0a3.2 3.2 0 1 0 6.4 0a3.2 3.2 0 1 0-6.4 0Z";
-    }
+const char* outline(std::size_t series) {
+    static const char* const outlines[colours] = {"M-3.2 0a3.2 3.2 0 1 0 6.4 0a3.2 3.2 0 1 0-6.4 0Z",
+                                                  "M0-4.4L4.4 0 0 4.4-4.4 0Z",
+                                                  "M-3-3H3V3H-3Z",
+                                                  "M0-4L4 3H-4Z",
+                                                  "M0 4L4-3H-4Z",
+                                                  "M-1.4-4H1.4V-1.4H4V1.4H1.4V4H-1.4V1.4H-4V-1.4H-1.4Z"};
+    return outlines[(series + (hollow(series) ? colours / 2 : 0)) % colours];
 }
 
 }  // namespace

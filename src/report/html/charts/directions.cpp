@@ -16,10 +16,6 @@ namespace {
 
 bool has_directions(const ArmReport& arm) { return !arm.consistency.directions.spectrum.empty(); }
 
-const DirectionOfGroup* of_state(const std::vector<DirectionOfGroup>& all) {
-    return all.empty() ? nullptr : &all.front();
-}
-
 /// Ratios of all directions of the whole state, an arm a row, with the interval that contains them.
 Html spectrum_chart(const Part& part) {
     constexpr double width = 360, left = 96, right = width - 12, top = 34, row = 26;
@@ -72,24 +68,24 @@ std::vector<ChartPoint> ellipse(ChartPoint centre, double along_x, double along_
 Html ellipse_chart(const Part& part, std::size_t i) {
     const ArmReport& arm = *part.arms[i];
     const DirectionsFound& found = arm.consistency.directions;
-    const DirectionOfGroup *largest = of_state(found.largest), *smallest = of_state(found.smallest);
-    if (largest == nullptr || smallest == nullptr) return {};
+    if (found.largest.empty() || found.smallest.empty()) return {};
+    const DirectionOfGroup &largest = found.largest.front(), &smallest = found.smallest.front();
     constexpr double width = 360, height = 250, room = 88;
     constexpr std::size_t most = 72;
     const ChartPoint centre{width / 2, 112};
-    const double wide = std::sqrt(largest->ratio), high = std::sqrt(smallest->ratio),
+    const double wide = std::sqrt(largest.ratio), high = std::sqrt(smallest.ratio),
                  unit = room / std::max({1.0, wide, high});
     Svg svg(width, height);
     svg.path(ellipse(centre, unit, unit), "line ideal");
     svg.path(ellipse(centre, unit * wide, unit * high), "line " + series_class(i));
     for (const double side : {-1.0, 1.0}) {
-        svg.mark({centre.x + side * unit * wide, centre.y}, i, largest->name + ": " + short_number(wide));
-        svg.mark({centre.x, centre.y + side * unit * high}, i, smallest->name + ": " + short_number(high));
+        svg.mark({centre.x + side * unit * wide, centre.y}, i, largest.name + ": " + short_number(wide));
+        svg.mark({centre.x, centre.y + side * unit * high}, i, smallest.name + ": " + short_number(high));
     }
-    svg.text({width / 2, height - 26}, Anchor::middle, "→ " + shortened(largest->name, most));
-    svg.text({width / 2, height - 8}, Anchor::middle, "↑ " + shortened(smallest->name, most));
+    svg.text({width / 2, height - 26}, Anchor::middle, "→ " + shortened(largest.name, most));
+    svg.text({width / 2, height - 8}, Anchor::middle, "↑ " + shortened(smallest.name, most));
     const std::string says = arm.arm + ": the errors are " + short_number(wide) + " times as large as P says along " +
-                             largest->name + ", and " + short_number(high) + " times along " + smallest->name;
+                             largest.name + ", and " + short_number(high) + " times along " + smallest.name;
     return chart(part, arm.arm + ": errors (line) against P (circle)", svg, "ellipse-" + std::to_string(i),
                  "worst plane of " + arm.arm, says);
 }
