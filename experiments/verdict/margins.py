@@ -1,8 +1,8 @@
 """What a wrong size of P does to those who use it: prints the table of docs/objections.md.
 
-A gate lets 95 % of the errors through if P is right. Two estimates, of equal error and independent, are fused with the
-weights that their P give, one of which is wrong: the variance of the result over that of the best weights, and over what
-is then believed.
+A gate lets 95 % of the errors through if P is right. Two estimates, of equal error and independent, are fused with
+the weights that their P give, one of which is wrong: the variance of the result over that of the best weights, and over
+what is then believed.
 """
 
 from math import erf, exp, gamma, sqrt

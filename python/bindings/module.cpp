@@ -2,6 +2,7 @@
 
 #include "calls.hpp"
 #include "judge.hpp"
+#include "planners.hpp"
 
 #include "cli/command.hpp"
 #include "cli/process/interrupt.hpp"
@@ -63,14 +64,18 @@ const cli::Command& command_of(const std::string& name) {
     throw InputError("unknown command " + name + ".");
 }
 
-/// Runs a command. Returns its exit code, and what it would have printed on the standard output and error stream.
+/// Runs a command, with planners of Python's. Returns its exit code, and what it would have printed on the standard
+/// output and error stream.
 std::tuple<int, std::string, std::string> command(const std::string& name, const std::vector<std::string>& arguments,
-                                                  const nb::dict& options, const Listener& listener) {
+                                                  const nb::dict& options, const Listener& listener,
+                                                  const nb::dict& given) {
+    const Planners planners(given);
     const cli::Parsed parsed = cli::parsed_of(command_of(name), arguments, values_of(command_of(name), options));
     return alone([&] {
         cli::Interrupt::keep_process();
         const Captured out(std::cout), err(std::cerr);
         const Listening listening(listener);
+        const Planners::Added added(planners);
         cli::check_process({name});
         const int code = cli::obey(parsed);
         return std::tuple(code, out.text(), err.text());
@@ -103,7 +108,8 @@ NB_MODULE(_core, module) {
     nb::set_leak_warnings(false);  // a forked process and a daemon thread leave things behind
     bind_errors(module);
     module.def("command", command, nb::arg("name"), nb::arg("arguments"), nb::arg("options"),
-               nb::arg("progress").none());
+               nb::arg("progress").none(), nb::arg("planners") = nb::dict());
+    bind_planners(module);
     module.def("program", run_program, nb::arg("arguments"));
     nb::class_<Said>(module, "Said")
         .def("__init__", say, nb::arg("name"), nb::arg("arguments"), nb::arg("options"))

@@ -112,6 +112,13 @@ def mapping(example: str) -> Check:
     return check
 
 
+def planners(name: str, value: Any) -> Any:
+    """Functions by names; as the library takes them [credence._planners]."""
+    from credence._planners import asked
+
+    return asked(value)
+
+
 def texts(name: str, value: Any) -> Any:
     """A text, or several."""
     each = [value] if isinstance(value, str) else value

@@ -7,6 +7,7 @@ import os
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from credence import Failure, _core
@@ -16,9 +17,9 @@ from credence._workers import TRIES, Workers
 Scenarios = list[tuple[str, str]]  # the name and the text of each file
 
 
-def run_shard(shared: tuple[Scenarios, dict[str, object]], shard: int, shards: int) -> bytes:
+def run_shard(shared: tuple[Scenarios, dict[str, object], dict[str, Any]], shard: int, shards: int) -> bytes:
     """Run a shard in a folder of its own, and return its results file: workers need not share a disk."""
-    scenarios, options = shared
+    scenarios, options, planners = shared
     with tempfile.TemporaryDirectory(prefix="credence-") as folder:
         paths = []
         for i, (name, text) in enumerate(scenarios):
@@ -28,7 +29,7 @@ def run_shard(shared: tuple[Scenarios, dict[str, object]], shard: int, shards: i
             paths.append(str(path))
         part = os.path.join(folder, "part.h5")
         of_shard = {**options, "shard": f"{shard}/{shards}", "output": part, "quiet": True}
-        code, _, said = _core.command("run", paths, of_shard, None)
+        code, _, said = _core.command("run", paths, of_shard, None, planners)
         if code != 0:
             raise Failure(f"shard {shard} of {shards}: it was stopped ({said.strip()}). Run it again.")
         return Path(part).read_bytes()
@@ -36,8 +37,9 @@ def run_shard(shared: tuple[Scenarios, dict[str, object]], shard: int, shards: i
 
 @contextlib.contextmanager
 def shards_of(
-    paths: Sequence[str], options: Mapping[str, object], executor: Any, shards: int | None, progress: bool | None
-) -> Iterator[list[str]]:
+    paths: Sequence[str], options: Mapping[str, object], executor: Any, shards: int | None, progress: bool | None,
+    planners: Mapping[str, Any] = MappingProxyType({}),
+) -> Iterator[list[str]]:  # fmt: skip
     """Run all shards of a study, and yield the paths of their results files for as long as they are needed.
 
     Parameters
@@ -51,10 +53,12 @@ def shards_of(
         How many; by default as many as the executor has workers.
     progress : bool
         Whether a bar counts the shards.
+    planners : dict
+        As `_core.command` takes them; what fails in single trials is said by the worker's process.
     """
     _core.command("show", paths[:1], {}, None)  # a file that cannot be read is refused here
     scenarios = [(os.path.basename(path), Path(path).read_text(encoding="utf-8")) for path in paths]
-    workers: Workers[int] = Workers(executor, run_shard, (scenarios, dict(options)))
+    workers: Workers[int] = Workers(executor, run_shard, (scenarios, dict(options), dict(planners)))
     try:
         count = shards or workers.count
         left = list(reversed(range(count)))

@@ -7,9 +7,9 @@ import os
 import shutil
 import tempfile
 import weakref
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from credence import _core
 from credence import _doors as doors
@@ -17,6 +17,7 @@ from credence._calls import note, progress_bar
 from credence._errors import Failure, InputError, invalid, wrong
 from credence._names import not_utf8
 from credence._outputs import goes_with
+from credence._planners import Asked, Now, note_failures, setting_of
 from credence._results import Printed, Results, Sources
 
 if TYPE_CHECKING:
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     Settings = Mapping[str, object]
     Sweep = Mapping[str, str | Iterable[object]]
     Goals = str | Sequence[str] | Mapping[str, object]
+    Planners = Mapping[str, tuple[str, Asked]]
 
 SEED = doors.whole(0, 2**64 - 1)
 SETTINGS = doors.mapping('{"noise.heading": 0.01}')
@@ -52,12 +54,16 @@ class Interrupted(KeyboardInterrupt):
 
 
 def _command(
-    name: str, arguments: Sequence[str], options: Mapping[str, object], progress: bool | None = False
-) -> tuple[int, str, str]:
+    name: str, arguments: Sequence[str], options: Mapping[str, object], progress: bool | None = False,
+    planners: Planners | None = None,
+) -> tuple[int, str, str]:  # fmt: skip
     """Run a command of the program; return its exit code and what it said on both streams."""
     _refuse_what_is_not_utf8(arguments, options)
     with progress_bar(progress) as bar:
-        return _core.command(name, arguments, options, bar)
+        result = _core.command(name, arguments, options, bar, planners or {})
+    if planners:
+        note_failures(planners)
+    return result
 
 
 def _refuse_what_is_not_utf8(arguments: Sequence[str], options: Mapping[str, object]) -> None:
@@ -128,13 +134,13 @@ def _path_of(study: Results | File) -> str:
 
 def _finish(
     name: str, arguments: Sequence[str], options: Mapping[str, object], output: str, progress: bool | None,
-    folder: str | None = None,
+    folder: str | None = None, planners: Planners | None = None,
 ) -> Study:  # fmt: skip
     """Run a command that writes a results file, and open it. With the study goes the folder that was made for it."""
     from credence.study import open as open_study
 
     try:
-        code, _, err = _command(name, arguments, {**options, "output": output, "quiet": True}, progress)
+        code, _, err = _command(name, arguments, {**options, "output": output, "quiet": True}, progress, planners)
         study = open_study(output)
     except BaseException as error:
         has_work = isinstance(error, Failure) and folder is not None and os.listdir(folder)
@@ -156,8 +162,8 @@ def _release(_: object) -> None:
 
 @doors.door(
     path_or_text=doors.paths, trials=doors.whole(1), seed=SEED, threads=doors.whole(1), set=SETTINGS, sweep=doors.sweep,
-    until=doors.goals, output=doors.output, overwrite=doors.flag, keep=doors.text, force=doors.flag,
-    executor=doors.executor, shards=doors.whole(1), progress=doors.flag,
+    planners=doors.planners, until=doors.goals, output=doors.output, overwrite=doors.flag, keep=doors.text,
+    force=doors.flag, executor=doors.executor, shards=doors.whole(1), progress=doors.flag,
 )  # fmt: skip
 def run(
     path_or_text: File | Sequence[File],
@@ -167,6 +173,7 @@ def run(
     threads: int | None = None,
     set: Settings | None = None,
     sweep: Sweep | None = None,
+    planners: Mapping[str, Callable[[Now], Any]] | None = None,
     until: Goals | None = None,
     output: File | None = None,
     overwrite: bool = False,
@@ -195,6 +202,10 @@ def run(
     sweep : dict
         Values of keys at each of which every scenario is run, a grid where there are several keys: lists, or ranges
         such as ``"0.01:0.1:5:log"``.
+    planners : dict
+        Planners of one's own by name, for the worlds ``deformable`` and ``explore``: functions of a `Now` of up to 64
+        trials that return the places of candidates, [B], or controls, [B, 3]. Each is an arm ``NAME.ESTIMATOR`` beside
+        those of the scenario [docs/planner.md].
     until : str, list of str or dict
         Stop when a mean is known to a half-width: ``"trace_P=0.5%"``, ``{"trace_P": "0.5%"}``.
     output : path
@@ -227,28 +238,32 @@ def run(
         A KeyboardInterrupt: the run was stopped. Its `study` has what was done.
     """
     options: dict[str, Any] = {"trials": trials, "seed": seed, "threads": threads, "keep": keep, "force": force}
-    options |= settings_of(set, sweep)
+    of_planners = cast("Planners", planners)  # as the door has made them
+    options |= settings_of({**(set or {}), **(setting_of(of_planners) if of_planners else {})}, sweep)
     if executor is not None:
         if until is not None:
             raise InputError("cannot stop shards by until (none of them has all trials). Leave executor out.")
         if output is not None and os.path.exists(output) and not overwrite:
             raise InputError(f"cannot write {output} (it exists). Say overwrite=True, or name another.")
-        return _run_shards(path_or_text, options, executor, shards, progress, output, overwrite)
+        return _run_shards(path_or_text, options, executor, shards, progress, output, overwrite, of_planners)
     elif shards is not None:
         raise InputError("shards: say nothing without an executor. Give both, or leave it out.")
     options |= {"overwrite": overwrite, "until": _goals(until)}
     with scenario_files(path_or_text) as paths:
-        return _written("run", paths, options, output, progress)
+        return _written("run", paths, options, output, progress, of_planners)
 
 
 def _run_shards(
     path_or_text: File | Sequence[File], options: Mapping[str, object], executor: Any, shards: int | None,
-    progress: bool | None, output: File | None = None, overwrite: bool = False,
+    progress: bool | None, output: File | None = None, overwrite: bool = False, planners: Planners | None = None,
 ) -> Study:  # fmt: skip
     from credence._shards import shards_of
 
     of_each = {**options, "threads": options.get("threads") or 1}
-    with scenario_files(path_or_text) as paths, shards_of(paths, of_each, executor, shards, progress) as parts:
+    with (
+        scenario_files(path_or_text) as paths,
+        shards_of(paths, of_each, executor, shards, progress, planners or {}) as parts,
+    ):
         return merge(parts, output, overwrite=overwrite, progress=False)
 
 
@@ -291,21 +306,26 @@ def merge(
 
 
 def _written(
-    name: str, arguments: Sequence[str], options: Mapping[str, object], output: File | None, progress: bool | None
-) -> Study:
+    name: str, arguments: Sequence[str], options: Mapping[str, object], output: File | None, progress: bool | None,
+    planners: Planners | None = None,
+) -> Study:  # fmt: skip
     """Run a command that writes a results file, a temporary one without `output`."""
     if output is not None:
-        return _finish(name, arguments, options, os.fspath(output), progress)
+        return _finish(name, arguments, options, os.fspath(output), progress, None, planners)
     folder = tempfile.mkdtemp(prefix="credence-")
-    return _finish(name, arguments, options, os.path.join(folder, "study.h5"), progress, folder)
+    return _finish(name, arguments, options, os.path.join(folder, "study.h5"), progress, folder, planners)
 
 
-@doors.door(study=FILE, trials=doors.whole(1), threads=doors.whole(1), until=doors.goals, progress=doors.flag)
+@doors.door(
+    study=FILE, trials=doors.whole(1), threads=doors.whole(1), planners=doors.planners, until=doors.goals,
+    progress=doors.flag,
+)  # fmt: skip
 def resume(
     study: Study | File,
     *,
     trials: int | None = None,
     threads: int | None = None,
+    planners: Mapping[str, Callable[[Now], Any]] | None = None,
     until: Goals | None = None,
     progress: bool | None = None,
 ) -> Study:
@@ -319,6 +339,8 @@ def resume(
         Trials of each scenario (those that were asked for before).
     threads, until, progress
         As of `run`.
+    planners : dict
+        Those of the study, whose sources must be what they were.
 
     Returns
     -------
@@ -326,14 +348,14 @@ def resume(
         The same file, opened again.
     """
     options: dict[str, object] = {"resume": True, "trials": trials, "threads": threads, "until": _goals(until)}
-    resumed = _finish("run", [], options, _path_of(study), progress)
+    resumed = _finish("run", [], options, _path_of(study), progress, None, cast("Planners", planners))
     weakref.finalize(resumed, _release, study)  # a temporary file lives as long as either study
     return resumed
 
 
 @doors.door(
     study=FILE, scenario=doors.text, arm=doors.text, trial=doors.whole(), noise=doors.path, set=SETTINGS,
-    output=doors.output, overwrite=doors.flag,
+    planners=doors.planners, output=doors.output, overwrite=doors.flag,
 )  # fmt: skip
 def replay(
     study: Study | File,
@@ -343,6 +365,7 @@ def replay(
     trial: int | None = None,
     noise: File | None = None,
     set: Settings | None = None,
+    planners: Mapping[str, Callable[[Now], Any]] | None = None,
     output: File | None = None,
     overwrite: bool = False,
 ) -> list[Trajectory]:
@@ -360,6 +383,8 @@ def replay(
         A noise record, with a scenario file in place of `study`.
     set : dict
         Values of keys in place of the scenario's.
+    planners : dict
+        Those of the study, as of `resume`.
     output : path
         The trajectory file. Without it the file is temporary.
     overwrite : bool
@@ -382,7 +407,8 @@ def replay(
     options = {"scenario": scenario, "arm": arm, "trial": trial, "noise": noise, "overwrite": overwrite}
     with tempfile.TemporaryDirectory(prefix="credence-") as folder:
         path = os.path.join(folder, "trial.h5") if output is None else os.fspath(output)
-        _command("replay", [_path_of(study)], {**options, **settings_of(set), "output": path})
+        _command("replay", [_path_of(study)], {**options, **settings_of(set), "output": path}, False,
+                 cast("Planners", planners))  # fmt: skip
         return open_trajectories(path)  # the open file outlives its name
 
 

@@ -3,7 +3,11 @@
 #include "engine/octets.hpp"
 #include "numeric/chi_square.hpp"
 
+#include <credence/error.hpp>
+#include <credence/text.hpp>
+
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -165,6 +169,27 @@ Block run_block(const Simulation& simulation, const std::vector<Column>& columns
     for (std::size_t a = 0; a < arms; ++a)
         block.arms.push_back(run_arm(simulation, columns, a, root_seed, index, trials, *workspace));
     return block;
+}
+
+void check_planner_repeats(const Simulation& simulation, std::size_t arm, const std::string& name,
+                           std::uint64_t root_seed) {
+    constexpr std::size_t all = 64, some = 32;
+    static_assert(some % octet == 0);
+    BlockMemory memory;
+    const auto columns_of = [&](std::size_t trials) {
+        memory.octets.prepare(simulation.shape(), trials, false);
+        simulation.simulate(arm, memory.octets.batch(root_seed, 0, memory.room.of_size(simulation.workspace_size(arm))));
+        return memory.octets.columns;
+    };
+    const std::vector<double> first = columns_of(all), again = columns_of(some);
+    const std::size_t count = static_cast<std::size_t>(simulation.shape().column_count);
+    for (std::size_t i = 0; i < some * count; ++i)
+        if (std::bit_cast<std::uint64_t>(first[i]) != std::bit_cast<std::uint64_t>(again[i]))
+            throw InputError("cannot run " + printable(name),
+                             "trial " + std::to_string(i / (octet * count) * octet + i % octet) +
+                                 " goes another way a second time, beside other trials",
+                             "Let the planner choose by what it is told of each trial alone, and draw its numbers from "
+                             "what it is given");
 }
 
 void free_workspaces() { workspaces().clear(); }

@@ -110,4 +110,9 @@ struct BlockMemory {
 ArmBlock run_arm(const Simulation& simulation, const std::vector<Column>& columns, std::size_t a,
                  std::uint64_t root_seed, std::int64_t index, int trials, BlockMemory& memory);
 
+/// Throws InputError where trials of an arm of that name give other numbers a second time, in other company: those of a
+/// planner of one's own.
+void check_planner_repeats(const Simulation& simulation, std::size_t arm, const std::string& name,
+                           std::uint64_t root_seed);
+
 }  // namespace credence

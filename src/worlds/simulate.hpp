@@ -23,11 +23,11 @@ struct Target {
     std::string name;
     int lanes = 1;
     SimulateFunction simulate = nullptr;
-    std::size_t (*workspace_size)(const ProblemView&, Estimator) = nullptr;
+    std::size_t (*workspace_size)(const ProblemView&, const Arm&) = nullptr;
     void (*simulate_landmarks)(const LandmarkView&, Estimator, const Batch&) = nullptr;
     std::size_t (*landmarks_workspace_size)(const LandmarkView&, Estimator) = nullptr;
     void (*simulate_explore)(const ExploreView&, const ExploreArm&, const Batch&) = nullptr;
-    std::size_t (*explore_workspace_size)(const ExploreView&, Estimator) = nullptr;
+    std::size_t (*explore_workspace_size)(const ExploreView&, const ExploreArm&) = nullptr;
     void (*simulate_own)(const OwnView&, const Batch&) = nullptr;
     std::size_t (*own_workspace_size)(const OwnView&) = nullptr;
 };
@@ -37,11 +37,11 @@ struct Target {
 #define CREDENCE_DECLARE_TARGET(name)                    \
     namespace name {                                   \
     void simulate(const ProblemView&, const Arm&, const Batch&); \
-    std::size_t workspace_size(const ProblemView&, Estimator); \
+    std::size_t workspace_size(const ProblemView&, const Arm&); \
     void simulate_landmarks(const LandmarkView&, Estimator, const Batch&); \
     std::size_t landmarks_workspace_size(const LandmarkView&, Estimator); \
     void simulate_explore(const ExploreView&, const ExploreArm&, const Batch&); \
-    std::size_t explore_workspace_size(const ExploreView&, Estimator); \
+    std::size_t explore_workspace_size(const ExploreView&, const ExploreArm&); \
     void simulate_own(const OwnView&, const Batch&); \
     std::size_t own_workspace_size(const OwnView&); \
     }

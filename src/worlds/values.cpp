@@ -243,6 +243,33 @@ std::vector<Controller> parse_controllers(const std::string& value) {
     return parse_names<Controller>("arms.controllers", value, controller_names());
 }
 
+std::vector<OwnPlanner> parse_own_planners(const std::string& value) {
+    std::vector<OwnPlanner> planners;
+    if (value == "none") return planners;
+    const auto refuse = [&](const std::string& what) {
+        throw invalid_value("arms.planners", value, what, "Give names of letters, digits, _ and -, such as `mine`");
+    };
+    std::vector<std::string> taken = controller_names();
+    for (const char* name : {"frontier", "informed"}) taken.push_back(name);
+    for (const std::string& given : split_list(value)) {
+        const std::size_t colon = std::min(given.find(':'), given.size());
+        const OwnPlanner planner{given.substr(0, colon), colon < given.size() ? given.substr(colon + 1) : ""};
+        if (const std::string why = is_name(planner.name); !why.empty()) refuse("'" + planner.name + "': " + why);
+        if (colon < given.size() && !is_name(planner.version).empty()) refuse("'" + planner.version + "' is no version");
+        if (std::ranges::find(taken, planner.name) != taken.end())
+            refuse("there is a controller " + planner.name + " already");
+        taken.push_back(planner.name);
+        planners.push_back(planner);
+    }
+    return planners;
+}
+
+std::string own_planners_text(const std::vector<OwnPlanner>& planners) {
+    std::vector<std::string> parts;
+    for (const auto& [name, version] : planners) parts.push_back(version.empty() ? name : name + ":" + version);
+    return parts.empty() ? "none" : joined(parts);
+}
+
 std::optional<std::vector<Estimator>> parse_estimators(const std::string& value) {
     if (value == "default") return std::nullopt;
     return parse_names<Estimator>("arms.estimators", value, estimator_names());

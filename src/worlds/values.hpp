@@ -66,6 +66,9 @@ const std::vector<std::string>& estimator_names();
 /// The process model that an estimator is for.
 Process process_of(Estimator estimator);
 std::vector<Controller> parse_controllers(const std::string& value);
+/// `none`, or names of planners of one's own, each with its version behind a colon where it has one.
+std::vector<OwnPlanner> parse_own_planners(const std::string& value);
+std::string own_planners_text(const std::vector<OwnPlanner>& planners);
 std::optional<std::vector<Estimator>> parse_estimators(const std::string& value);
 
 /// Why a text is refused, or empty where it is good.

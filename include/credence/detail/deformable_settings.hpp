@@ -8,6 +8,7 @@
 #include <credence/columns.hpp>
 #include <credence/detail/estimator_list.hpp>
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -124,10 +125,17 @@ struct PlannerSettings {
     std::optional<int> speeds;                    ///< half-width of the grid in steps of d/5; none: the process's own
     std::optional<std::vector<double>> turns;     ///< rad; none: the path's own
     std::optional<int> horizon;                   ///< steps; none: 2 where an arm plans by a horizon, else 1
+    std::map<std::string, std::string> own;       ///< values of the keys of planners of one's own, by their names
+};
+
+/// A planner of one's own, by its name; the version tells apart those that bear it in turn.
+struct OwnPlanner {
+    std::string name, version;
 };
 
 struct ArmSettings {
     std::vector<Controller> controllers{Controller::fixed, Controller::greedy};
+    std::vector<OwnPlanner> planners;
     std::optional<std::vector<Estimator>> estimators;  ///< none: the process's own
 };
 
@@ -159,6 +167,7 @@ struct DeformableSettings {
 struct Arm {
     Controller controller = Controller::fixed;
     Estimator estimator = Estimator::ekf;
+    int planner = -1;                             ///< of ArmSettings::planners, in place of the controller; -1: none
     friend bool operator==(const Arm&, const Arm&) = default;
 };
 
@@ -182,11 +191,11 @@ void validate(const DeformableSettings& scenario);
 /// Whether the scenario has an arm of this controller.
 bool has_arm(const DeformableSettings& scenario, Controller controller);
 
-/// Arms of a resolved scenario, controllers outer, estimators inner.
+/// Arms of a resolved scenario, controllers and then planners outer, estimators inner.
 std::vector<Arm> arms_of(const DeformableSettings& scenario);
 
-/// `controller.estimator`, such as `greedy.ekf`.
-std::string arm_name(const Arm& arm);
+/// `controller.estimator`, such as `greedy.ekf`, of an arm of the scenario.
+std::string arm_name(const DeformableSettings& scenario, const Arm& arm);
 
 /// The number of features, M.
 int feature_count(const DeformableSettings& scenario);

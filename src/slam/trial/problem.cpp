@@ -128,6 +128,9 @@ Problem::Problem(const DeformableSettings& resolved_scenario)
     for (std::size_t i = features; i < sway_.size(); ++i)
         sway_increment_[i] = {sway_[i].x - sway_[i - features].x, sway_[i].y - sway_[i - features].y};
     factor_edges();
+    planners_ = planners_of(scenario_);
+    for (const auto& planner : planners_) planner_list_.push_back(planner.get());
+    view_.planners = planner_list_.data();
     view_.process = scenario_.process;
     view_.poses = scenario_.poses;
     view_.features = static_cast<int>(features);

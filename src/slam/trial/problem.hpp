@@ -1,6 +1,7 @@
 #pragma once
 // The tables that a scenario's equations read, computed once for all trials.
 
+#include <credence/detail/planner_batch.hpp>
 #include "slam/planning/horizon.hpp"
 #include <credence/slam_columns.hpp>
 
@@ -51,6 +52,7 @@ struct ProblemView : CommonView {
     Process process = Process::heading;
     WorldParameters world;
     ControlParameters control;
+    const Planner* const* planners = nullptr;  ///< [planners of the scenario's arms]
 
     /// Number of steps that a controller plans ahead on the way to pose k: a horizon ends no later than at the last
     /// pose.
@@ -85,6 +87,8 @@ private:
     std::vector<double> contrast_coefficients_;
     std::vector<Contrast> contrasts_;
     std::vector<double> coverage_bounds_;
+    std::vector<std::shared_ptr<const Planner>> planners_;
+    std::vector<const Planner*> planner_list_;
     ProblemView view_;
 };
 

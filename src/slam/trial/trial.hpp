@@ -19,72 +19,108 @@ struct Workspace : CommonWorkspace<Layout, Real, Estimating> {
     HorizonWorkspace<Layout, Real> horizon;
 };
 
-/// One trial of one arm. Every value of `columns` [column_count] and `series` [series_count, K - 1] is written.
+/// One trial of one arm, step by step: `start`, for each pose after the first one `control` and `step`, `finish`. All
+/// of it is inlined: what a call could reach would have to stay in memory.
 template <class Layout, class Real, class Estimating, class Noise, class Observer>
-void run_trial(const ProblemView& problem, Controller controller, const Noise& noise, Observer& observer,
-               Workspace<Layout, Real, Estimating>& work, Real* columns, Real* all_series) {
-    const Layout layout(problem.features);
-    const auto features = layout.features();
-    auto& truth = work.truth;
-    auto& belief = work.belief;
-    auto& sightings = work.sightings;
-    auto& estimator = work.estimator;
-    Sums<Real> sums;
-    Outcome<Real> outcome;
+class Steps {
+public:
+    using Work = Workspace<Layout, Real, Estimating>;
 
-    // Pose 0: every feature is initialised, whatever its range.
-    WorldDraws<Layout, Real> draws(layout);
-    Vector2<Real>* measurement = draws.template of_features<Source::measurement>();
-    const auto draw = [&](int k) {
-        draws.draw(noise, k);
-        shape_tails(problem.sensor, features, k, noise, measurement);
-    };
-    draw(0);
-    start_truth(truth, problem.world, layout, draws, noise);
-    look_first(truth, problem.sensor, features, measurement, sightings);
-    start_belief(belief, problem.filter, layout, sightings);
-    Real error[Layout::capacity];
-    estimation_error(belief, truth, layout, error);
-    sums.pose_error = squared_pose_error<Layout>(error);
-    sums.position = truth.position;
-    note_trouble(belief, layout.size(), sums.pose_error, all_lanes<Real>(), 0, outcome);
-    estimator.start(layout, belief, truth);
-    observer.started(layout, truth, belief);
+    Steps(const ProblemView& problem, const Noise& noise, Observer& observer, Work& work)
+        : problem_(problem), noise_(noise), observer_(observer), work_(work), layout_(problem.features),
+          draws_(layout_) {}
 
-    for (int k = 1; k < problem.poses; ++k) {
-        // Choose the control, from the belief.
-        Command<Real> command;
-        if (!plans(controller)) {
-            command = steered(controller, belief, problem.control, problem.filter, layout, k, noise);
-        } else {
-            const Planning<Layout, Real> given{problem.control, problem.filter, problem.sensor, layout, work.planner};
-            command = plan_ahead(belief, given, k, problem.steps_ahead(controller, k), work.horizon);
-            observer.planned(k, layout, belief);
-        }
+    const Layout& layout() const { return layout_; }
+    Work& work() { return work_; }
+
+    /// Pose 0: every feature is initialised, whatever its range.
+    CREDENCE_INLINE void start() {
+        auto& truth = work_.truth;
+        auto& belief = work_.belief;
+        draw(0);
+        start_truth(truth, problem_.world, layout_, draws_, noise_);
+        look_first(truth, problem_.sensor, layout_.features(), measurement(), work_.sightings);
+        start_belief(belief, problem_.filter, layout_, work_.sightings);
+        Real error[Layout::capacity];
+        estimation_error(belief, truth, layout_, error);
+        sums_.pose_error = squared_pose_error<Layout>(error);
+        sums_.position = truth.position;
+        note_trouble(belief, layout_.size(), sums_.pose_error, all_lanes<Real>(), 0, outcome_);
+        work_.estimator.start(layout_, belief, truth);
+        observer_.started(layout_, truth, belief);
+    }
+
+    /// The control to pose k, from the belief.
+    CREDENCE_INLINE Command<Real> control(Controller controller, int k) {
+        const auto& belief = work_.belief;
+        if (!plans(controller))
+            return steered(controller, belief, problem_.control, problem_.filter, layout_, k, noise_);
+        const Planning<Layout, Real> given{problem_.control, problem_.filter, problem_.sensor, layout_, work_.planner};
+        const Command<Real> command = plan_ahead(belief, given, k, problem_.steps_ahead(controller, k), work_.horizon);
+        observer_.planned(k, layout_, belief);
+        return command;
+    }
+
+    CREDENCE_INLINE void step(int k, const Command<Real>& command, Real* all_series) {
+        auto& truth = work_.truth;
+        auto& belief = work_.belief;
+        auto& sightings = work_.sightings;
+        auto& estimator = work_.estimator;
 
         // Move the robot and the features.
         draw(k);
-        move_features(truth, problem.world, layout, k, draws);
-        move_robot(truth, problem.world, command, draws);
+        move_features(truth, problem_.world, layout_, k, draws_);
+        move_robot(truth, problem_.world, command, draws_);
 
         // Predict.
-        estimator.predict(belief, problem.filter, layout, command, truth, k);
+        estimator.predict(belief, problem_.filter, layout_, command, truth, k);
 
         // See.
-        look(truth, problem.sensor, layout, k, measurement, noise, sightings);
+        look(truth, problem_.sensor, layout_, k, measurement(), noise_, sightings);
         const auto edge_measurement = [&](int e) {
-            return measure_edge(truth, problem.sensor, problem.filter.edges[e], k, e, noise);
+            return measure_edge(truth, problem_.sensor, problem_.filter.edges[e], k, e, noise_);
         };
-        const auto linearised = estimator.linearised(belief, layout, truth);
-        gate_sightings(belief, problem.filter, layout, linearised, sightings);
-        observer.predicted(k, layout, truth, command, belief, sightings, edge_measurement, linearised);
+        const auto linearised = estimator.linearised(belief, layout_, truth);
+        gate_sightings(belief, problem_.filter, layout_, linearised, sightings);
+        observer_.predicted(k, layout_, truth, command, belief, sightings, edge_measurement, linearised);
 
         // Update, and compare with the truth.
-        estimator.update(belief, problem.filter, layout, sightings, edge_measurement, linearised, work.update);
-        evaluate_step(problem, layout, belief, truth, work.update, k, work.elimination, sums, outcome, all_series);
-        observer.updated(k, layout, belief, all_series);
+        estimator.update(belief, problem_.filter, layout_, sightings, edge_measurement, linearised, work_.update);
+        evaluate_step(problem_, layout_, belief, truth, work_.update, k, work_.elimination, sums_, outcome_,
+                      all_series);
+        observer_.updated(k, layout_, belief, all_series);
     }
-    write_columns(problem, sums, outcome, columns);
+
+    CREDENCE_INLINE void finish(Real* columns) { write_columns(problem_, sums_, outcome_, columns); }
+
+private:
+    CREDENCE_INLINE Vector2<Real>* measurement() { return draws_.template of_features<Source::measurement>(); }
+    CREDENCE_INLINE void draw(int k) {
+        draws_.draw(noise_, k);
+        shape_tails(problem_.sensor, layout_.features(), k, noise_, measurement());
+    }
+
+    const ProblemView& problem_;
+    const Noise& noise_;
+    Observer& observer_;
+    Work& work_;
+    Layout layout_;
+    WorldDraws<Layout, Real> draws_;
+    Sums<Real> sums_;
+    Outcome<Real> outcome_;
+};
+
+/// One trial of one arm, by `controller` or, where they are given, by `commands` [K - 1]. Every value of `columns`
+/// [column_count] and `series` [series_count, K - 1] is written.
+template <class Layout, class Real, class Estimating, class Noise, class Observer>
+void run_trial(const ProblemView& problem, Controller controller, const Noise& noise, Observer& observer,
+               Workspace<Layout, Real, Estimating>& work, Real* columns, Real* all_series,
+               const Command<Real>* commands = nullptr) {
+    Steps<Layout, Real, Estimating, Noise, Observer> trial(problem, noise, observer, work);
+    trial.start();
+    for (int k = 1; k < problem.poses; ++k)
+        trial.step(k, commands != nullptr ? commands[k - 1] : trial.control(controller, k), all_series);
+    trial.finish(columns);
 }
 
 }  // namespace CREDENCE_TARGET

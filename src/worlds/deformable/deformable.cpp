@@ -1,5 +1,7 @@
 #include "worlds/deformable/deformable.hpp"
 
+#include "engine/octets.hpp"
+
 #include <credence/detail/world_of.hpp>
 #include <credence/error.hpp>
 #include "worlds/values.hpp"
@@ -24,7 +26,7 @@ struct Deformable {
     void describe(const Settings& settings, Scenario& scenario) const {
         scenario.components = state_components(settings);
         scenario.groups = state_groups(settings);
-        for (const Arm& arm : arms_of(settings)) scenario.arms.push_back(arm_name(arm));
+        for (const Arm& arm : arms_of(settings)) scenario.arms.push_back(arm_name(settings, arm));
     }
     std::vector<DrawSource> sources(const Settings& settings) const {
         const NoiseSettings& noise = settings.noise;
@@ -71,11 +73,17 @@ DeformableSimulation::DeformableSimulation(std::shared_ptr<const Problem> proble
 }
 
 std::size_t DeformableSimulation::workspace_size(std::size_t arm) const {
-    return target_.workspace_size(problem_->view(), arms_[arm].estimator);
+    return target_.workspace_size(problem_->view(), arms_[arm]);
 }
 
 void DeformableSimulation::simulate(std::size_t arm, const Batch& batch) const {
     target_.simulate(problem_->view(), arms_[arm], batch);
+}
+
+void DeformableSimulation::check_repeats(std::uint64_t root_seed) const {
+    for (std::size_t arm = 0; arm < arms_.size(); ++arm)
+        if (arms_[arm].planner >= 0)
+            check_planner_repeats(*this, arm, arm_name(problem_->scenario(), arms_[arm]), root_seed);
 }
 
 Trajectory DeformableSimulation::replay(const Scenario&, std::size_t arm, std::uint64_t root_seed,

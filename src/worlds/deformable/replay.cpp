@@ -1,8 +1,7 @@
 #include "worlds/deformable/deformable.hpp"
 
 #include <credence/error.hpp>
-#include "slam/estimators/estimators.hpp"
-#include "slam/trial/trial.hpp"
+#include "worlds/deformable/pack_trial.hpp"
 #include "worlds/counted.hpp"
 #include "worlds/slam_recorder.hpp"
 
@@ -52,11 +51,13 @@ private:
     std::size_t cost_;
 };
 
-template <class Noise>
-Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, const std::string& source) {
+/// `choose`: gives the commands of a trial that a planner of one's own chooses, by its type.
+template <class Noise, class Choose>
+Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, const std::string& source,
+                  const Choose& choose) {
     const ProblemView& view = problem.view();
     const DeformableSettings& settings = problem.scenario();
-    Trajectory trajectory = empty_trajectory(scenario_of(settings), arm_name(arm), trial_columns(settings));
+    Trajectory trajectory = empty_trajectory(scenario_of(settings), arm_name(settings, arm), trial_columns(settings));
     trajectory.source = source;
     const SlamVariables variables =
         add_slam_variables(trajectory, settings, edge_list(settings), "that led to this pose");
@@ -68,7 +69,11 @@ Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, co
         using StateLayout = Layout<process(), any_count>;
         using Estimating = typename decltype(estimator)::template type<StateLayout, double>;
         const auto work = std::make_unique<Workspace<StateLayout, double, Estimating>>();
-        run_trial(view, arm.controller, noise, recorder, *work, trajectory.column_values.data(), all_series.data());
+        std::vector<Command<double>> commands;
+        if (arm.planner >= 0)
+            commands = choose(std::type_identity<DeformableTrial<StateLayout, double, decltype(estimator)>>{});
+        run_trial(view, arm.controller, noise, recorder, *work, trajectory.column_values.data(), all_series.data(),
+                  commands.empty() ? nullptr : commands.data());
     };
     const auto run_process = [&](auto process) {
         with_estimator<process()>(arm.estimator, [&](auto estimator) { run(process, estimator); });
@@ -110,6 +115,7 @@ CountedVariances count(const Problem& problem, const Arm& arm, std::uint64_t roo
 }  // namespace
 
 CountedVariances DeformableSimulation::counted(std::size_t arm, std::uint64_t root_seed, std::int64_t trials) const {
+    if (arms_[arm].planner >= 0) return {};
     return count(*problem_, arms_[arm], root_seed, trials);
 }
 
@@ -152,13 +158,17 @@ void check_covers(const NoiseRecord& record, const DeformableSettings& scenario,
     for (const Controller controller : scenario.arms.controllers)
         if (controller == Controller::random)
             refuse("a record has no draws of candidates", "Leave random out of arms.controllers");
+    if (!scenario.arms.planners.empty())
+        refuse("planners of one's own run on draws alone", "Set arms.planners=none");
 }
 
 Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial) {
     return replay(problem, arm,
                   KeyedDraws<double>(root_seed, static_cast<std::uint64_t>(trial), problem.view().world.truncate,
                                      problem.view().other),
-                  source_text(root_seed, trial));
+                  source_text(root_seed, trial), [&](auto type) {
+                      return commands_of<typename decltype(type)::type>(problem.view(), arm.planner, root_seed, trial);
+                  });
 }
 
 std::vector<Trajectory> replay_record(const Scenario& scenario, const NoiseRecord& record, const std::string& file) {
@@ -167,7 +177,8 @@ std::vector<Trajectory> replay_record(const Scenario& scenario, const NoiseRecor
     const Problem problem(settings);
     std::vector<Trajectory> trajectories;
     for (const Arm& arm : arms_of(settings))
-        trajectories.push_back(replay(problem, arm, RecordedDraws(record), "noise record"));
+        trajectories.push_back(replay(problem, arm, RecordedDraws(record), "noise record",
+                                      [](auto) { return std::vector<Command<double>>{}; }));
     return trajectories;
 }
 

@@ -167,12 +167,16 @@ std::vector<Arm> arms_of(const DeformableSettings& scenario) {
     std::vector<Arm> arms;
     for (const Controller controller : scenario.arms.controllers)
         for (const Estimator estimator : *scenario.arms.estimators) arms.push_back({controller, estimator});
+    for (int planner = 0; planner < static_cast<int>(scenario.arms.planners.size()); ++planner)
+        for (const Estimator estimator : *scenario.arms.estimators)
+            arms.push_back({Controller::fixed, estimator, planner});
     return arms;
 }
 
-std::string arm_name(const Arm& arm) {
-    return controller_names()[static_cast<std::size_t>(arm.controller)] + "." +
-           estimator_names()[static_cast<std::size_t>(arm.estimator)];
+std::string arm_name(const DeformableSettings& scenario, const Arm& arm) {
+    const std::string controller = arm.planner < 0 ? controller_names()[static_cast<std::size_t>(arm.controller)]
+                                                   : scenario.arms.planners[static_cast<std::size_t>(arm.planner)].name;
+    return controller + "." + estimator_names()[static_cast<std::size_t>(arm.estimator)];
 }
 
 }  // namespace credence

@@ -1,5 +1,6 @@
 #include "worlds/explore/explore.hpp"
 
+#include "engine/octets.hpp"
 #include "worlds/values.hpp"
 #include <credence/detail/world_of.hpp>
 
@@ -7,7 +8,8 @@ namespace credence {
 
 namespace {
 
-std::string arm_name(const ExploreArm& arm) {
+std::string arm_name(const ExploreSettings& settings, const ExploreArm& arm) {
+    if (arm.planner >= 0) return credence::arm_name(settings, {{}, arm.estimator, arm.planner});
     return explorer_names()[static_cast<std::size_t>(arm.controller)] + "." +
            estimator_names()[static_cast<std::size_t>(arm.estimator)];
 }
@@ -23,7 +25,7 @@ struct Explore {
     void describe(const Settings& settings, Scenario& scenario) const {
         scenario.components = state_components(settings);
         scenario.groups = explore_groups(settings);
-        for (const ExploreArm& arm : arms_of(settings)) scenario.arms.push_back(arm_name(arm));
+        for (const ExploreArm& arm : arms_of(settings)) scenario.arms.push_back(arm_name(settings, arm));
     }
     std::vector<DrawSource> sources(const Settings&) const { return {}; }
     std::vector<Column> columns(const Settings& settings, const Scenario&) const { return explore_columns(settings); }
@@ -43,6 +45,9 @@ std::vector<ExploreArm> arms_of(const ExploreSettings& settings) {
     std::vector<ExploreArm> arms;
     for (const Explorer controller : settings.explorers)
         for (const Estimator estimator : *settings.arms.estimators) arms.push_back({controller, estimator});
+    for (int planner = 0; planner < static_cast<int>(settings.arms.planners.size()); ++planner)
+        for (const Estimator estimator : *settings.arms.estimators)
+            arms.push_back({Explorer::fixed, estimator, planner});
     return arms;
 }
 
@@ -53,7 +58,13 @@ ExploreSimulation::ExploreSimulation(const ExploreSettings& settings, Target tar
 }
 
 std::size_t ExploreSimulation::workspace_size(std::size_t arm) const {
-    return target_.explore_workspace_size(problem_.view(), arms_[arm].estimator);
+    return target_.explore_workspace_size(problem_.view(), arms_[arm]);
+}
+
+void ExploreSimulation::check_repeats(std::uint64_t root_seed) const {
+    for (std::size_t arm = 0; arm < arms_.size(); ++arm)
+        if (arms_[arm].planner >= 0)
+            check_planner_repeats(*this, arm, arm_name(problem_.settings(), arms_[arm]), root_seed);
 }
 
 void ExploreSimulation::simulate(std::size_t arm, const Batch& batch) const {

@@ -30,6 +30,7 @@ public:
     const SimulationShape& shape() const override { return shape_; }
     std::size_t workspace_size(std::size_t arm) const override;
     void simulate(std::size_t arm, const Batch& batch) const override;
+    void check_repeats(std::uint64_t root_seed) const override;
     Trajectory replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,
                       std::int64_t trial) const override;
 

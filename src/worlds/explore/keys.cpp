@@ -2,6 +2,8 @@
 
 #include "worlds/values.hpp"
 
+#include <credence/detail/planner_batch.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +20,8 @@ const std::vector<std::string>& shared_keys() {
         "noise.odometry", "noise.initial_heading", "noise.initial_position", "noise.measurement_tails",
         "noise.degrees_of_freedom", "noise.outlier_share", "noise.outlier_scale", "noise.truncate", "filter.heading",
         "filter.odometry", "filter.measurement", "filter.covariance", "filter.gate", "control.waypoints",
-        "planner.criterion", "planner.heading_weight", "planner.speeds", "planner.turns", "arms.estimators"};
+        "planner.criterion", "planner.heading_weight", "planner.speeds", "planner.turns", "arms.estimators",
+        "arms.planners"};
     return names;
 }
 
@@ -99,11 +102,13 @@ int rank(const ExploreKey& key) {
 std::vector<ExploreKey> all_keys() {
     std::vector<ExploreKey> keys;
     add_common_keys(keys);
-    for (const std::string& name : shared_keys()) {
+    std::vector<std::string> shared = shared_keys();
+    for (const PlannerKey& key : planner_keys()) shared.push_back(key.name);
+    for (const std::string& name : shared) {
         const DeformableKey& key = *std::ranges::find(scenario_keys(), name, &DeformableKey::name);
         const bool path = name == "control.waypoints";
         keys.push_back({key.name, path ? "path of the controller fixed as `x y, x y`, from 0 0 on (length)" : key.help,
-                        key.set, key.get, key.choices, false, key.sigma_unit});
+                        key.set, key.get, key.choices, false, key.sigma_unit, key.hidden});
     }
     for (ExploreKey& key : own_keys()) keys.push_back(std::move(key));
     std::ranges::stable_sort(keys, {}, rank);

@@ -247,6 +247,35 @@ private:
     ExploreState<Real>& work_;
 };
 
+/// Calls price(i, command, allowed, sees, new cells) for every candidate, with the trials of the pack in its lanes; from
+/// the mean in `still`, as of ExplorePlanner.
+template <class Real, class Work, class Price>
+void each_candidate_ahead(const ExploreView& problem, Work& work, const Price& price) {
+    const Real* mean = work.planner.still.mean;
+    const Rotation<Real> heading = rotation(mean[ExploreLayout::heading]);
+    const Vector2<Real> here = point_at(mean, ExploreLayout::position);
+    const Mask<Real> none = negated(all_lanes<Real>());
+    for (int i = 0; i < problem.control.candidate_count; ++i) {
+        const Command<Real> command = command_from<Real>(problem.control.candidates[i]);
+        const Vector2<Real> u = rotate(heading, command.move), there = here + u;
+        const Rotation<Real> turned = rotation(mean[ExploreLayout::heading] + command.turn);
+        Mask<Real> allowed = all_lanes<Real>();
+        for (int w = 0; w < problem.wall_count && any(allowed); ++w)
+            allowed = both(allowed, negated(free_share(problem.walls[w], problem.radius, here, u) < Real(1)));
+        const auto sees = [&](int j, const Real& squared) {
+            const Mask<Real> seen = both(work.present(problem, j), in_range(problem.sensor, squared));
+            return any(seen) ? both(seen, in_sight(problem, there, turned,
+                                                   point_at(mean, ExploreLayout::feature(j)) - there, squared))
+                             : none;
+        };
+        Real cells(0);
+        each_new_cell(
+            problem, there, turned, [&](int cell) { return negated(work.viewed[cell]); },
+            [&](int, Mask<Real> fresh) { cells = cells + select(fresh, Real(1), Real(0)); });
+        price(i, command, allowed, sees, cells);
+    }
+}
+
 /// The cell that a place is in, or the nearest one.
 inline int cell_at(const CellGrid& grid, double x, double y) {
     const auto index = [&](double along, int count) {

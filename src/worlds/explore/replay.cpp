@@ -1,8 +1,7 @@
 #include "worlds/explore/explore.hpp"
 
 #include "worlds/deformable/deformable.hpp"
-#include "slam/estimators/estimators.hpp"
-#include "worlds/explore/trial.hpp"
+#include "worlds/explore/pack_trial.hpp"
 #include "worlds/slam_recorder.hpp"
 
 #include <limits>
@@ -88,13 +87,16 @@ Trajectory ExploreSimulation::replay(const Scenario& scenario, std::size_t arm, 
     std::vector<int> queue(cells), from(cells);
     const KeyedDraws<double> draws(root_seed, static_cast<std::uint64_t>(trial), view.world.truncate);
     with_estimator<Process::heading>(arms_[arm].estimator, [&](auto estimator) {
-        using Estimating = typename decltype(estimator)::template type<ExploreLayout, double>;
-        const auto work = std::make_unique<ExploreWorkspace<double, Estimating>>();
+        using Trial = ExploreTrial<double, decltype(estimator)>;
+        std::vector<Command<double>> commands;
+        if (const int planner = arms_[arm].planner; planner >= 0)
+            commands = commands_of<Trial>(view, planner, root_seed, trial);
+        const auto work = std::make_unique<ExploreWorkspaceOf<double, decltype(estimator)>>();
         work->viewed = viewed.get();
         work->queue = queue.data();
         work->from = from.data();
         run_trial(view, arms_[arm].controller, draws, recorder, *work, trajectory.column_values.data(),
-                  all_series.data());
+                  all_series.data(), commands.empty() ? nullptr : commands.data());
     });
     fill_failed(trajectory.columns, trajectory.column_values.data());
     return trajectory;

@@ -50,6 +50,7 @@ inline constexpr int largest_cell_count = 1 << 16;
 struct ExploreArm {
     Explorer controller = Explorer::fixed;
     Estimator estimator = Estimator::ekf;
+    int planner = -1;  ///< as of Arm
 };
 std::vector<ExploreArm> arms_of(const ExploreSettings& settings);
 

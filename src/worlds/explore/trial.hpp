@@ -145,79 +145,116 @@ void write_columns(const ExploreView& problem, Sums<Real> sums, const ExploreSum
     columns[explore_column_count - 1] = outcome.pose;
 }
 
-/// One trial of one arm. `columns` [explore_column_count]; `series` [series_count, K - 1]; both are written whole.
+/// One trial of one arm, step by step: `start`, for each pose after the first one `control` and `step`, `finish`.
 template <class Real, class Estimating, class Noise, class Observer>
-void run_trial(const ExploreView& problem, Explorer controller, const Noise& noise, Observer& observer,
-               ExploreWorkspace<Real, Estimating>& work, Real* columns, Real* all_series) {
+class ExploreSteps {
+public:
     using State = ExploreLayout;
-    const State layout(problem.features, problem.group_count);
-    auto& truth = work.truth;
-    auto& belief = work.belief;
-    auto& estimator = work.estimator;
-    const auto no_edge = [](int) { return Vector2<Real>{}; };
-    Sums<Real> sums;
-    ExploreSums<Real> own;
-    Outcome<Real> outcome;
-    ExploreDraws<Real> draws(layout);
-    const auto draw = [&](int k) {
-        draws.draw(noise, k);
-        shape_tails(problem.sensor, layout.features(), k, noise, draws.template of_features<Source::measurement>());
-    };
-    draw(0);
-    for (int i = 0; i < problem.grid.count(); ++i) work.viewed[i] = negated(all_lanes<Real>());
-    start_trial(problem, layout, draws, noise, work);
-    own.coverage = view_cells(problem, truth.position, truth.rotation, work.viewed);
-    Real error[State::capacity];
-    estimation_error(belief, truth, layout, error);
-    sums.pose_error = squared_pose_error<State>(error);
-    sums.position = truth.position;
-    note_trouble(belief, layout.size(), sums.pose_error, all_lanes<Real>(), 0, outcome);
-    observer.started(layout, truth, belief);
-    observer.explored(0, work);
+    using Work = ExploreWorkspace<Real, Estimating>;
 
-    for (int k = 1; k < problem.poses; ++k) {
-        // Choose the control.
-        Command<Real> command;
+    ExploreSteps(const ExploreView& problem, const Noise& noise, Observer& observer, Work& work)
+        : problem_(problem), noise_(noise), observer_(observer), work_(work),
+          layout_(problem.features, problem.group_count), draws_(layout_) {}
+
+    const State& layout() const { return layout_; }
+    Work& work() { return work_; }
+
+    void start() {
+        const auto& truth = work_.truth;
+        const auto& belief = work_.belief;
+        draw(0);
+        for (int i = 0; i < problem_.grid.count(); ++i) work_.viewed[i] = negated(all_lanes<Real>());
+        start_trial(problem_, layout_, draws_, noise_, work_);
+        own_.coverage = view_cells(problem_, truth.position, truth.rotation, work_.viewed);
+        Real error[State::capacity];
+        estimation_error(belief, truth, layout_, error);
+        sums_.pose_error = squared_pose_error<State>(error);
+        sums_.position = truth.position;
+        note_trouble(belief, layout_.size(), sums_.pose_error, all_lanes<Real>(), 0, outcome_);
+        observer_.started(layout_, truth, belief);
+        observer_.explored(0, work_);
+    }
+
+    /// The control to pose k; `informed` alone reads the truth.
+    Command<Real> control(Explorer controller, int k) {
         switch (controller) {
-            case Explorer::frontier: command = towards_frontier(problem, belief, work); break;
+            case Explorer::frontier: return towards_frontier(problem_, work_.belief, work_);
             case Explorer::random:
-                command = fetch_each(problem.control, noise.uniform(Source::control, k, 0) *
-                                                          Real(problem.control.candidate_count));
-                break;
+                return fetch_each(problem_.control, noise_.uniform(Source::control, k, 0) *
+                                                        Real(problem_.control.candidate_count));
             case Explorer::greedy:
             case Explorer::informed: {
-                ExplorePlanner planner(problem, controller == Explorer::informed, belief, truth, layout, k, work);
-                command = planner.choose(
-                    [&](int i, double cost, bool allowed) { observer.priced(k, i, cost, allowed); });
-                break;
+                ExplorePlanner planner(problem_, controller == Explorer::informed, work_.belief, work_.truth, layout_,
+                                       k, work_);
+                return planner.choose(
+                    [&](int i, double cost, bool allowed) { observer_.priced(k, i, cost, allowed); });
             }
-            default: command = command_from<Real>(problem.control.waypoints[k - 1]);
+            default: return command_from<Real>(problem_.control.waypoints[k - 1]);
         }
+    }
+
+    void step(int k, const Command<Real>& command, Real* all_series) {
+        auto& truth = work_.truth;
+        auto& belief = work_.belief;
+        auto& estimator = work_.estimator;
+        const auto no_edge = [](int) { return Vector2<Real>{}; };
 
         // Move the robot, and predict.
         draw(k);
-        const Mask<Real> stopped = move_among_walls<State>(truth, problem, command, draws);
-        const Command<Real> told = reported(problem, command, draws);
-        estimator.predict(belief, problem.filter, layout, told, truth, k);
+        const Mask<Real> stopped = move_among_walls<State>(truth, problem_, command, draws_);
+        const Command<Real> told = reported(problem_, command, draws_);
+        estimator.predict(belief, problem_.filter, layout_, told, truth, k);
 
         // See.
         Mask<Real> first[State::feature_capacity];
-        const Real first_sights = look_around(problem, layout, k, draws, noise, work, first);
-        own.coverage = own.coverage + view_cells(problem, truth.position, truth.rotation, work.viewed);
-        const auto linearised = estimator.linearised(belief, layout, truth);
-        gate_sightings(belief, problem.filter, layout, linearised, work.sightings);
-        observer.predicted(k, layout, truth, told, belief, work.sightings, no_edge, linearised);
+        const Real first_sights = look_around(problem_, layout_, k, draws_, noise_, work_, first);
+        own_.coverage = own_.coverage + view_cells(problem_, truth.position, truth.rotation, work_.viewed);
+        const auto linearised = estimator.linearised(belief, layout_, truth);
+        gate_sightings(belief, problem_.filter, layout_, linearised, work_.sightings);
+        observer_.predicted(k, layout_, truth, told, belief, work_.sightings, no_edge, linearised);
 
         // Update with the landmarks that are known, initialise those that are new, and compare with the truth.
-        estimator.update(belief, problem.filter, layout, work.sightings, no_edge, linearised, work.update);
-        initialise_landmarks(problem, layout, first, work);
-        work.update.unseen = work.update.unseen - first_sights;
-        evaluate_step(problem, layout, belief, truth, work.update, k, work.elimination, sums, outcome, all_series);
-        add_own_series(problem, layout, k, work, stopped, own, all_series);
-        observer.updated(k, layout, belief, all_series);
-        observer.explored(k, work);
+        estimator.update(belief, problem_.filter, layout_, work_.sightings, no_edge, linearised, work_.update);
+        initialise_landmarks(problem_, layout_, first, work_);
+        work_.update.unseen = work_.update.unseen - first_sights;
+        evaluate_step(problem_, layout_, belief, truth, work_.update, k, work_.elimination, sums_, outcome_,
+                      all_series);
+        add_own_series(problem_, layout_, k, work_, stopped, own_, all_series);
+        observer_.updated(k, layout_, belief, all_series);
+        observer_.explored(k, work_);
     }
-    write_columns(problem, sums, own, outcome, columns);
+
+    void finish(Real* columns) { write_columns(problem_, sums_, own_, outcome_, columns); }
+
+private:
+    void draw(int k) {
+        draws_.draw(noise_, k);
+        shape_tails(problem_.sensor, layout_.features(), k, noise_,
+                    draws_.template of_features<Source::measurement>());
+    }
+
+    const ExploreView& problem_;
+    const Noise& noise_;
+    Observer& observer_;
+    Work& work_;
+    State layout_;
+    ExploreDraws<Real> draws_;
+    Sums<Real> sums_;
+    ExploreSums<Real> own_;
+    Outcome<Real> outcome_;
+};
+
+/// One trial of one arm, by `controller` or, where they are given, by `commands` [K - 1]. `columns`
+/// [explore_column_count]; `series` [series_count, K - 1]; both are written whole.
+template <class Real, class Estimating, class Noise, class Observer>
+void run_trial(const ExploreView& problem, Explorer controller, const Noise& noise, Observer& observer,
+               ExploreWorkspace<Real, Estimating>& work, Real* columns, Real* all_series,
+               const Command<Real>* commands = nullptr) {
+    ExploreSteps<Real, Estimating, Noise, Observer> trial(problem, noise, observer, work);
+    trial.start();
+    for (int k = 1; k < problem.poses; ++k)
+        trial.step(k, commands != nullptr ? commands[k - 1] : trial.control(controller, k), all_series);
+    trial.finish(columns);
 }
 
 }  // namespace CREDENCE_TARGET

@@ -1,5 +1,7 @@
 #include "worlds/landmarks/landmarks.hpp"
 
+#include "worlds/values.hpp"
+
 #include "worlds/landmarks/keys.hpp"
 
 #include <credence/detail/world_of.hpp>
@@ -24,7 +26,7 @@ struct Landmarks {
         scenario.components = state_components(state);
         scenario.groups = state_groups(state);
         for (const Estimator estimator : settings.estimators)
-            scenario.arms.push_back(arm_name({Controller::fixed, estimator}));
+            scenario.arms.push_back("fixed." + estimator_names()[static_cast<std::size_t>(estimator)]);
     }
     std::vector<DrawSource> sources(const Settings&) const { return landmark_sources(); }
     std::vector<Column> columns(const Settings& settings, const Scenario&) const {
