@@ -35,7 +35,7 @@ install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT documentati
   FILES_MATCHING PATTERN "*.md" PATTERN "*.svg" PATTERN "*.png" PATTERN "notebooks/*.py"
   PATTERN "site" EXCLUDE)
 install(DIRECTORY experiments DESTINATION ${CREDENCE_DATA} COMPONENT examples
-  FILES_MATCHING PATTERN "*.ini" PATTERN "own_filter/*" PATTERN "worlds/*")
+  FILES_MATCHING PATTERN "*.ini" PATTERN "own_filter/*" PATTERN "planner/*" PATTERN "worlds/*")
 install(DIRECTORY analysis DESTINATION ${CREDENCE_DATA} COMPONENT examples
   PATTERN "__pycache__" EXCLUDE PATTERN "*.h5" EXCLUDE)
 install(DIRECTORY python/credence DESTINATION ${CREDENCE_DATA}/python COMPONENT examples

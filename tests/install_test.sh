@@ -63,6 +63,24 @@ wait $example || { cat example/said; exit 1; }
 grep -q 'exit code 1, as it should be' example/said || { cat example/said; exit 1; }
 [ -s example/results/tracker.h5 ] || { echo "the example leaves no results"; exit 1; }
 
+# The planner of docs/planner.md as anybody's program. Any credence reads its file.
+cp -r usr/share/credence/experiments/planner planner
+cmake -S planner -B planner/build -DCMAKE_PREFIX_PATH="$work/usr" >log 2>&1 && cmake --build planner/build >>log 2>&1 ||
+  { cat log; exit 1; }
+curious() {
+  planner/build/curious run usr/share/credence/experiments/explore/rooms.ini --set arms.controllers=greedy \
+    --set scenario.poses=11 --trials 64 --quiet "$@"
+}
+curious --set arms.planners=curious --sweep planner.curious.weight=0,10 -o curious.h5 >/dev/null
+$credence report curious.h5 --format csv >curious.csv
+coverages() { awk -F, -v arm="$1.ekf" '$2 == arm && $5 == "coverage" { print $7 }' curious.csv | uniq | wc -l; }
+[ "$(coverages greedy) $(coverages curious)" = "1 2" ] || { echo "the planner's key does nothing"; exit 1; }
+for wrong in 'planner.curious.weight=-1' 'planner.curious.wait=1' 'planner.other.weight=1'; do
+  status=0
+  curious --set arms.planners=curious --set "$wrong" -o wrong.h5 >log 2>&1 || status=$?
+  [ $status = 2 ] && grep -q "${wrong%=*}" log || { echo "$wrong: exit code $status"; cat log; exit 1; }
+done
+
 # Its world runs in lanes: every target of the engine gives the same file, from objects that share no symbol with others.
 (cd own_filter
   targets=$(ls build/tracker_*.o | sed 's|build/tracker_\(.*\)\.o|\1|')

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The include rule: a module includes itself and those before it, never one after it. Its order is that of the list
 # below, which CONTRIBUTING.md explains. A source's module is its folder in src; a public header names its own in its
-# first comment. Public headers include no private ones, are 16 at most, and each compiles alone. No line of the product is
+# first comment. Public headers include no private ones, are 17 at most, and each compiles alone. No line of the product is
 # longer than 120 columns.
 # modules_test.sh SOURCE_FOLDER CXX EIGEN_FOLDER
 set -euo pipefail
@@ -47,7 +47,7 @@ long=$(find src include -name '*.[ch]pp' -exec awk '
   { line = $0; gsub(/[\200-\277]/, "", line) } length(line) > 120 { print FILENAME ":" FNR ": more than 120 columns" }' {} +)
 [ -z "$long" ] || { echo "$long"; status=1; }
 promised=$(find include/credence -maxdepth 1 -name '*.hpp')
-[ "$(echo "$promised" | wc -l)" -le 16 ] || { echo "more than 16 public headers"; status=1; }
+[ "$(echo "$promised" | wc -l)" -le 17 ] || { echo "more than 17 public headers"; status=1; }
 [ "$(find src -mindepth 1 -maxdepth 1 -type d | wc -l)" -eq 14 ] || { echo "src does not have fourteen folders"; status=1; }
 echo "$promised" | xargs -P 2 -I{} "$cxx" -std=c++20 -fsyntax-only -Iinclude -isystem "$eigen" -include {} -x c++ /dev/null || status=1
 exit $status

@@ -57,7 +57,7 @@ public:
     std::vector<PlannerKey> keys() const override {
         std::vector<PlannerKey> all;
         for (const KeyOf<All>& key : own_keys())
-            all.push_back({key.name, key.help, key.get(All{}), key.choices, [key](const std::string& value) {
+            all.push_back({key.name, [key](const std::string& value) {
                                All settings;
                                key.set(settings, value);
                                return key.get(settings);

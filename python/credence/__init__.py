@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from credence._errors import Failure, InputError
+    from credence._planners import Now, Prospects
     from credence._record import Record, Run
     from credence.arm import Arm, Scenario
     from credence.budgeting import Budget, budget
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
 _modules = {  # each with what it has for users
     "_errors": ("Failure", "InputError"),
+    "_planners": ("Now", "Prospects"),
     "_record": ("Record", "Run"),
     "arm": ("Arm", "Scenario"),
     "budgeting": ("Budget", "budget"),
@@ -48,6 +50,8 @@ __all__ = [
     "Failure",
     "InputError",
     "Interrupted",
+    "Now",
+    "Prospects",
     "Record",
     "Report",
     "Run",

@@ -4,6 +4,7 @@
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 
+#include <algorithm>
 #include <limits>
 
 namespace credence {
@@ -20,6 +21,12 @@ std::map<std::string, Known>& registry() {
     return all;
 }
 
+/// NAME of planner.NAME.key.
+std::string planner_of(const std::string& key) {
+    const std::size_t begin = key.find('.') + 1;
+    return key.substr(begin, key.find('.', begin) - begin);
+}
+
 }  // namespace
 
 double PlannerBatch::uniform(int place, int index) const {
@@ -34,14 +41,27 @@ void add_planner(const std::string& name, std::shared_ptr<const Planner> planner
 
 void remove_planner(const std::string& name) { registry().erase(name); }
 
-std::vector<PlannerKey> planner_keys() {
-    std::vector<PlannerKey> all;
-    for (const auto& [name, known] : registry())
-        for (PlannerKey& key : known.planner->keys()) all.push_back(std::move(key));
-    return all;
+bool is_planner_key(const std::string& key) {
+    return key.starts_with("planner.") && std::ranges::count(key, '.') == 2;
+}
+
+std::string planner_value(const std::string& key, const std::string& value) {
+    const auto found = registry().find(planner_of(key));
+    if (found == registry().end()) return value;
+    std::vector<std::string> names;
+    for (const PlannerKey& own : found->second.planner->keys()) {
+        if (own.name == key) return own.read(value);
+        names.push_back(own.name);
+    }
+    throw InputError("unknown key " + key + " (its planner has " + (names.empty() ? "none" : joined(names)) +
+                     "). Leave it out.");
 }
 
 std::vector<std::shared_ptr<const Planner>> planners_of(const DeformableSettings& settings) {
+    for (const auto& [key, value] : settings.planner.own)
+        if (std::ranges::find(settings.arms.planners, planner_of(key), &OwnPlanner::name) == settings.arms.planners.end())
+            throw InputError("unknown key " + key + " (arms.planners has no " + planner_of(key) + "). Leave it out, or "
+                             "add the planner.");
     std::vector<std::shared_ptr<const Planner>> planners;
     for (const OwnPlanner& own : settings.arms.planners) {
         const auto found = registry().find(own.name);

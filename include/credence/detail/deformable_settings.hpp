@@ -188,6 +188,12 @@ DeformableSettings resolved(DeformableSettings scenario);
 /// Ranges of single keys are checked when they are set.
 void validate(const DeformableSettings& scenario);
 
+/// Whether a key is one of a planner of one's own: planner.NAME.key [credence/planner.hpp].
+bool is_planner_key(const std::string& key);
+/// The value of such a key as a scenario keeps it. Throws InputError where the planner is there and has no such key, or
+/// the value is out of its range.
+std::string planner_value(const std::string& key, const std::string& value);
+
 /// Whether the scenario has an arm of this controller.
 bool has_arm(const DeformableSettings& scenario, Controller controller);
 

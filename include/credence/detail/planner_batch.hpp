@@ -75,8 +75,7 @@ struct PlannerBatch {
 /// A key `planner.NAME.key` of a planner. `read` throws InputError for a value out of its range, and returns it as the
 /// scenario keeps it.
 struct PlannerKey {
-    std::string name, help, value;              ///< the default
-    std::vector<std::string> choices;
+    std::string name;
     std::function<std::string(const std::string&)> read;
 };
 
@@ -96,9 +95,8 @@ public:
 void add_planner(const std::string& name, std::shared_ptr<const Planner> planner, const std::string& version = {});
 void remove_planner(const std::string& name);
 
-/// The keys of all planners.
-std::vector<PlannerKey> planner_keys();
-/// The planners of a scenario's arms, with its values of their keys. Throws InputError where one is not there.
+/// The planners of a scenario's arms, with its values of their keys. Throws InputError where one is not there, or a key
+/// is that of another planner.
 std::vector<std::shared_ptr<const Planner>> planners_of(const DeformableSettings& settings);
 
 }  // namespace credence

@@ -1,6 +1,7 @@
 #pragma once
 // Module worlds: the adapter by which every world, ours and a user's own, becomes what engine, files and program know.
 
+#include <credence/detail/deformable_settings.hpp>
 #include <credence/detail/keys.hpp>
 #include <credence/detail/worlds.hpp>
 
@@ -64,6 +65,8 @@ public:
             if (key.hidden && value == key.get(defaults)) continue;
             scenario.settings.push_back({key.name, value, key.later && value == key.get(defaults)});
         }
+        if constexpr (requires { resolved.planner.own; })
+            for (const auto& [key, value] : resolved.planner.own) scenario.settings.push_back({key, value, false});
         world_.describe(resolved, scenario);
         scenario.baselines = baselines_among(scenario.arms);
         scenario.own_settings = std::make_shared<const Settings>(resolved);
@@ -76,16 +79,25 @@ public:
             return *static_cast<const Settings*>(scenario.own_settings.get());
         Settings settings;
         for (const Setting& setting : scenario.settings)
-            if (setting.key != world_key) set_key(world_.keys(), settings, setting.key, setting.value);
+            if (setting.key != world_key) set(settings, setting.key, setting.value);
         return world_.resolved(std::move(settings));
     }
 
 private:
+    void set(Settings& settings, const std::string& key, const std::string& value) const {
+        if constexpr (requires { settings.planner.own; })
+            if (is_planner_key(key)) {
+                settings.planner.own[key] = planner_value(key, trimmed(value));
+                return;
+            }
+        set_key(world_.keys(), settings, key, value);
+    }
+
     class DraftOf : public Draft {
     public:
         explicit DraftOf(const WorldOf& world) : world_(world) {}
         void set(const std::string& key, const std::string& value) override {
-            set_key(world_.world_.keys(), settings_, key, value);
+            world_.set(settings_, key, value);
         }
         Scenario declare() const override { return world_.scenario_of(settings_); }
 

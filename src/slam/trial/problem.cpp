@@ -1,6 +1,7 @@
 #include "slam/trial/problem.hpp"
 
 #include <credence/detail/functions.hpp>
+#include <credence/detail/planner_batch.hpp>
 #include "scenario/state_series.hpp"
 
 #include <algorithm>

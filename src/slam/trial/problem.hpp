@@ -1,13 +1,14 @@
 #pragma once
 // The tables that a scenario's equations read, computed once for all trials.
 
-#include <credence/detail/planner_batch.hpp>
 #include "slam/planning/horizon.hpp"
 #include <credence/slam_columns.hpp>
 
 #include <memory>
 
 namespace credence {
+
+class Planner;
 
 /// s (cos angle, sin angle), by our own sincos: the same bits everywhere.
 Point polar(double s, double angle);

@@ -1,6 +1,5 @@
 #include "worlds/deformable/keys.hpp"
 
-#include <credence/detail/planner_batch.hpp>
 #include <credence/error.hpp>
 #include <credence/text.hpp>
 
@@ -212,21 +211,12 @@ void add_published_keys(Keys& keys) {
     published("published.pose_error", [](auto& s) -> auto& { return s.published.pose_error; });
 }
 
-/// Hidden: a scenario has them where it has planners of one's own [docs/planner.md].
-void add_own_planner_keys(Keys& keys) {
-    for (const PlannerKey& own : planner_keys())
-        keys.push_back({own.name, own.help,
-                        [own](DeformableSettings& s, const std::string& v) { s.planner.own[own.name] = own.read(v); },
-                        [own](const DeformableSettings& s) {
-                            const auto found = s.planner.own.find(own.name);
-                            return found == s.planner.own.end() ? own.value : found->second;
-                        },
-                        own.choices});
+/// Hidden: a scenario has it where it has planners of one's own [docs/planner.md].
+void add_own_planner_key(Keys& keys) {
     keys.push_back({"arms.planners", "none, or planners of one's own by their names",
                     [](DeformableSettings& s, const std::string& v) { s.arms.planners = parse_own_planners(v); },
                     [](const DeformableSettings& s) { return own_planners_text(s.arms.planners); }, {"none"}});
-    for (auto key = keys.end() - 1 - static_cast<std::ptrdiff_t>(planner_keys().size()); key != keys.end(); ++key)
-        key->hidden = true;
+    keys.back().hidden = true;
 }
 
 Keys all_keys() {
@@ -240,7 +230,7 @@ Keys all_keys() {
     add_control_keys(keys);
     add_planner_keys(keys);
     add_arm_keys(keys);
-    add_own_planner_keys(keys);
+    add_own_planner_key(keys);
     add_published_keys(keys);
     add_budget_keys(keys, slam_sources());
     return keys;

@@ -2,8 +2,6 @@
 
 #include "worlds/values.hpp"
 
-#include <credence/detail/planner_batch.hpp>
-
 #include <algorithm>
 #include <cmath>
 
@@ -102,9 +100,7 @@ int rank(const ExploreKey& key) {
 std::vector<ExploreKey> all_keys() {
     std::vector<ExploreKey> keys;
     add_common_keys(keys);
-    std::vector<std::string> shared = shared_keys();
-    for (const PlannerKey& key : planner_keys()) shared.push_back(key.name);
-    for (const std::string& name : shared) {
+    for (const std::string& name : shared_keys()) {
         const DeformableKey& key = *std::ranges::find(scenario_keys(), name, &DeformableKey::name);
         const bool path = name == "control.waypoints";
         keys.push_back({key.name, path ? "path of the controller fixed as `x y, x y`, from 0 0 on (length)" : key.help,
