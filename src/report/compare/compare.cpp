@@ -19,7 +19,7 @@ std::vector<std::int64_t> counted(const std::vector<double>& statuses) {
 
 /// Counts of the arm; `statuses`: of the trials that are compared, by how they ended.
 ComparedSide side_of(const ComparedArm& compared, const StudyFile& file, const std::vector<std::int64_t>& statuses) {
-    ComparedSide side{file.path, "study " + study_hash(file.study), compared.results.trials, 0, 0, 0, {}};
+    ComparedSide side{file.path, "study " + study_hash(file.study), compared.results.trials};
     if (const auto arm = static_cast<std::size_t>(&compared.arm - compared.results.arms.data()); file.is_record)
         side.steps = file.steps_of_arms[arm];
     for (std::size_t status = 0; status < statuses.size(); ++status)
@@ -54,6 +54,22 @@ void lead_with_log_score(std::vector<ComparedColumn>& columns) {
     if (score != columns.end()) std::rotate(columns.begin(), score, score + 1);
 }
 
+/// One filter on two paths: columns to conclude on behind trace(P), which is of what each path has found, and whether
+/// the filter can be believed on either path.
+void compare_paths(const ChosenPair& chosen, ComparedPair& pair) {
+    const std::vector<ComparedColumn>& columns = pair.comparison.columns;
+    for (std::size_t c = 1; c < columns.size(); ++c)
+        if (columns[c].name == "pose_error" || columns[c].name == "coverage")
+            pair.further.emplace_back(c, Conclusion::not_shown);
+    const auto verdict = [](const ComparedArm& one) {
+        const WithTotals with_totals(one.results);
+        const auto& arm = (*with_totals).arms[static_cast<std::size_t>(&one.arm - one.results.arms.data())];
+        return judge(evidence_of(*with_totals, arm), Limits()).verdict;
+    };
+    pair.a.verdict = verdict(chosen.a);
+    pair.b.verdict = verdict(chosen.b);
+}
+
 ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
     const ScenarioResults &a = chosen.a.results, &b = chosen.b.results;
     ComparedPair pair;
@@ -78,7 +94,10 @@ ComparedPair compared(const ChosenPair& chosen, std::uint64_t root_seed) {
         pair.b = side_of(chosen.b, chosen.file_b, counted(common.of_b(statuses(chosen.b))));
         pair.differences = shown_differences(a.scenario, b.scenario);
     }
-    if (is_of_filters(chosen, pair.differences)) lead_with_log_score(pair.comparison.columns);
+    if (is_of_filters(chosen, pair.differences))
+        lead_with_log_score(pair.comparison.columns);
+    else if (!pair.not_run() && !chosen.file_a.is_record)
+        compare_paths(chosen, pair);
     for (const ComparedColumn& column : pair.comparison.columns) {
         pair.a.mean.push_back(column.paired.mean_a);
         pair.b.mean.push_back(column.paired.mean_b);
@@ -91,8 +110,8 @@ constexpr double level_of_failures = 0.01, level_of_mean = 0.04;
 /// Of fewer pairs the t interval alone concludes nothing.
 constexpr std::int64_t enough_pairs = 30;
 
-Conclusion concluded_on_mean(const ComparedPair& pair, double level) {
-    const PairedComparison& paired = pair.comparison.columns.front().paired;
+Conclusion concluded_on_mean(const ComparedPair& pair, std::size_t column, double level) {
+    const PairedComparison& paired = pair.comparison.columns[column].paired;
     if (pair.not_run()) return Conclusion::not_run;
     if (paired.pairs > 0 && paired.ties == 1) return Conclusion::equal;
     const bool few = paired.pairs < enough_pairs;
@@ -104,12 +123,14 @@ Conclusion concluded_on_mean(const ComparedPair& pair, double level) {
     return few ? Conclusion::too_few : Conclusion::not_shown;
 }
 
-void conclude(ComparedPair& pair, std::size_t comparisons) {
+void conclude(ComparedPair& pair, std::size_t comparisons, std::size_t means) {
     const std::int64_t a = pair.a.failed_trials(), b = pair.b.failed_trials();
     pair.failure_p = fisher_exact(a, pair.trials, b, pair.trials);
     if (pair.failure_p <= level_of_failures / static_cast<double>(comparisons))
         pair.failures = a < b ? Conclusion::lower : Conclusion::higher;
-    pair.conclusion = concluded_on_mean(pair, level_of_mean / static_cast<double>(comparisons));
+    const double level = level_of_mean / static_cast<double>(means);
+    pair.conclusion = concluded_on_mean(pair, 0, level);
+    for (auto& [column, conclusion] : pair.further) conclusion = concluded_on_mean(pair, column, level);
 }
 
 /// Holm's correction over all comparisons that are shown, as for the pairs of a report.
@@ -143,7 +164,9 @@ CompareReport compare_studies(const std::vector<StudyFile>& files, const std::op
     for (const ChosenPair& chosen : chosen_pairs(files, choice, report.left_out))
         report.pairs.push_back(compared(chosen, report.root_seed));
     correct_together(report.pairs);
-    for (ComparedPair& pair : report.pairs) conclude(pair, report.pairs.size());
+    std::size_t means = report.pairs.size();
+    for (const ComparedPair& pair : report.pairs) means += pair.further.size();
+    for (ComparedPair& pair : report.pairs) conclude(pair, report.pairs.size(), means);
     return report;
 }
 

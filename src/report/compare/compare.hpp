@@ -8,6 +8,7 @@
 #include <credence/consistency.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace credence {
@@ -39,8 +40,8 @@ struct ArmsChoice {
 /// that file; of two, A alone is of the first and B alone of the second; else each names its file. Throws InputError.
 ArmsChoice read_arms(const std::string& text, const std::vector<std::string>& paths);
 
-/// The conclusion from the pairs on the first column: trace(P) where the arms are controllers of one filter, and the
-/// log score where they are different filters. On the trials that failed or diverged: lower, higher or not_shown.
+/// The conclusion from the pairs on a column: the log score where the arms are different filters; trace(P), pose error
+/// and coverage where they are controllers of one. On the trials that failed or diverged: lower, higher or not_shown.
 enum class Conclusion {
     lower,      ///< A's mean, or share, is lower
     higher,     ///< it is higher
@@ -61,10 +62,11 @@ struct ComparedSide {
     std::int64_t trials = 0;                ///< of its file
     std::int64_t failed = 0, diverged = 0;  ///< of the trials that are compared
     std::int64_t steps = 0;                 ///< of a record: at which it has results
+    std::optional<Verdict> verdict{};       ///< of one filter on two paths: on all trials of its file
     std::int64_t failed_trials() const { return failed + diverged; }
     /// By column, over the pairs: mean of A - mean of B = mean of A - B. NaN where no trial is kept and some trial is
     /// in no pair.
-    std::vector<double> mean;
+    std::vector<double> mean{};
 };
 
 /// A - B of one scenario.
@@ -79,7 +81,9 @@ struct ComparedPair {
     std::vector<KeyDifference> differences;  ///< of scenarios of different files, but for titles and published values
     double failure_p = 1;            ///< of Fisher's exact test on the shares that failed or diverged
     Conclusion failures = Conclusion::not_shown;    ///< on these shares
-    Conclusion conclusion = Conclusion::not_shown;  ///< on the means of the pairs
+    Conclusion conclusion = Conclusion::not_shown;  ///< on the mean of the first column
+    /// Of one filter on two paths: on further columns, by their places.
+    std::vector<std::pair<std::size_t, Conclusion>> further{};
     std::optional<Summary> with_truth;  ///< the mean difference with the covariance of the truth's errors added to P
 
     bool not_run() const { return a.trials == 0 || b.trials == 0; }
@@ -99,8 +103,8 @@ struct CompareReport {
 /// the first file's of the same name (later - first). Arms of several files are called `STEM:arm`.
 ///
 /// The conclusion on failures is drawn by Fisher's exact test at 1 %/m, m the number of comparisons; that on the mean
-/// where it is beyond t_{1 - 0.02/m, n - 1} standard errors, and below 30 pairs only if the sign test agrees at 4 %/m:
-/// all conclusions hold together at 95 % [docs/statistics.md, Comparison].
+/// where it is beyond t_{1 - 0.02/k, n - 1} standard errors, k the number of means that are concluded on, and below 30
+/// pairs only if the sign test agrees at 4 %/k: all hold together at 95 % [docs/statistics.md, Comparison].
 ///
 /// Throws InputError where files have different root seeds, where a scenario's world is not the same in them (any key
 /// but scenario.title and those of filter, control, planner, arms and published), or where nothing has both arms; and
@@ -119,7 +123,7 @@ std::string compare_head(const CompareReport& report);
 /// Failed and diverged trials, studies that are not complete, scenarios that are left out; a line each.
 std::string compare_notes(const CompareReport& report);
 
-/// One sentence on the first column, and the others that differ.
+/// One sentence on each column that is concluded on, and the others that differ.
 std::string conclusion_text(const ComparedPair& pair);
 
 /// What is compared, where the arms' names do not show it; the scenario's name and title in the first line.

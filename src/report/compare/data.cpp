@@ -15,6 +15,7 @@ namespace {
 Json side_json(const ComparedSide& side) {
     Json json{{"file", side.file},     {"source", side.source},     {"trials", side.trials},
               {"failed", side.failed}, {"diverged", side.diverged}, {"failed_trials", side.failed_trials()}};
+    if (side.verdict) json["verdict"] = verdict_name(*side.verdict);
     if (side.steps > 0) json["steps"] = side.steps;
     return json;
 }
@@ -57,6 +58,8 @@ Json pair_json(const ComparedPair& pair, std::uint64_t root_seed) {
     if (pair.steps_of_any > 0) behind["steps"] = {{"any", pair.steps_of_any}, {"compared", pair.steps_of_all}};
     behind["root_seed"] = root_seed;
     behind["complete"] = pair.complete;
+    for (const auto& [column, conclusion] : pair.further)
+        behind["conclusions"][pair.comparison.columns[column].name] = conclusion_name(conclusion);
     for (const bool lower : {true, false}) {
         Json& names = behind[lower ? "lower" : "higher"] = Json::array();
         for (const ComparedColumn& column : pair.comparison.columns)

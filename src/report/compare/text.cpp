@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include "report/compare/compare.hpp"
 #include <credence/text.hpp>
 
@@ -41,18 +40,18 @@ std::string not_run_text(const ComparedPair& pair) {
 }
 
 /// How Wilcoxon's test relates to a mean difference that is not shown.
-std::string despite(const Comparison& comparison) {
-    const PairedComparison& paired = comparison.columns.front().paired;
-    if (!(comparison.columns.front().holm_p <= 0.05)) return "";
+std::string despite(const Comparison& comparison, const ComparedColumn& column) {
+    const PairedComparison& paired = column.paired;
+    if (!(column.holm_p <= 0.05)) return "";
     const bool below = paired.wilcoxon_z < 0;
     return "; yet " + comparison.a + " is " + (below ? "lower" : "higher") + " in " +
            percent(below ? paired.wins_a : paired.wins_b) + " of trials (p " +
-           p_text(comparison.columns.front().holm_p) + ")";
+           p_text(column.holm_p) + ")";
 }
 
 /// The pairs that carry the mean, where it has not the sign of the median.
-std::string carried(const ComparedPair& pair) {
-    const CarryingPairs& carrying = pair.comparison.columns.front().paired.carrying;
+std::string carried(const ComparedPair& pair, const ComparedColumn& column) {
+    const CarryingPairs& carrying = column.paired.carrying;
     if (carrying.count == 0) return "";
     std::vector<std::string> trials;
     for (const std::int64_t trial : carrying.first) trials.push_back(std::to_string(trial));
@@ -135,54 +134,68 @@ std::string truth_text(const ComparedPair& pair) {
            bracketed(pair.with_truth->ci95, digits);
 }
 
-/// That on the first column.
-std::string first_conclusion(const ComparedPair& pair) {
+/// That on a column; with_truth is of the first.
+std::string concluded_text(const ComparedPair& pair, std::size_t c, Conclusion conclusion) {
     const Comparison& comparison = pair.comparison;
-    const PairedComparison& paired = comparison.columns.front().paired;
+    const ComparedColumn& column = comparison.columns[c];
+    const PairedComparison& paired = column.paired;
+    const bool with_truth = c == 0 && pair.with_truth;
     const int digits = decimals_of(paired);
     const double mean = paired.difference.mean;
     const Interval& interval = paired.difference.ci95;
-    const bool is_score = comparison.columns.front().name == "log_score";
-    const std::string text = is_score ? "log score (lower is better): " : comparison.columns.front().name + ": ",
+    const bool is_score = column.name == "log_score";
+    const std::string text = is_score ? "log score (lower is better): " : column.name + ": ",
                       both = comparison.a + " and " + comparison.b;
     if (pair.not_run()) return text + not_run_text(pair);
     if (paired.pairs == 0)
         return text + (is_score ? "nothing to compare without covariances of the whole state"
                                 : "no pairs, nothing to compare");
-    if (pair.conclusion == Conclusion::equal) return text + both + " are equal in every trial";
-    const bool few = pair.conclusion == Conclusion::too_few;
+    if (conclusion == Conclusion::equal) return text + both + " are equal in every trial";
+    const bool few = conclusion == Conclusion::too_few;
     const std::string not_shown = few ? "too few pairs to conclude (" : "no difference shown (";
-    if ((few || pair.conclusion == Conclusion::not_shown) && !std::isfinite(mean))
+    if ((few || conclusion == Conclusion::not_shown) && !std::isfinite(mean))
         return text + not_shown + "the mean of " + comparison.name() + " is not finite)";
-    const std::string doubt = pair.with_truth                             ? truth_text(pair)
+    const std::string doubt = with_truth                                  ? truth_text(pair)
                               : !(interval.low > 0 || interval.high < 0) ? ""
                               : few ? "; the sign test has p " + p_text(paired.sign_p)
                                     : "; not enough for all conclusions to hold together";
-    if (few || pair.conclusion == Conclusion::not_shown)
+    if (few || conclusion == Conclusion::not_shown)
         return text + not_shown + comparison.name() + " is " + number(mean, digits) +
                (paired.pairs == 1                       ? ", one pair"
                 : std::isfinite(half_width(interval)) ? " " + bracketed(interval, digits)
                                                       : "") + ")" +
-               doubt + despite(comparison) + carried(pair);
-    const bool lower = pair.conclusion == Conclusion::lower;
+               doubt + despite(comparison, column) + carried(pair, column);
+    const bool lower = conclusion == Conclusion::lower;
     const double share = lower ? paired.wins_a : paired.wins_b, against = lower ? paired.wins_b : paired.wins_a;
     const Interval size = lower ? Interval{-interval.high, -interval.low} : interval;
     return text + comparison.a + " is " + (lower ? "lower" : "higher") + " than " + comparison.b + " by " +
            number(std::abs(mean), digits) + " " + bracketed(size, digits) +
            (share < against ? " on average, though only in " : ", in ") + percent(share) + " of trials" +
            (paired.ties >= 0.005 ? " (equal in " + percent(paired.ties) + ")" : "") +
-           (pair.with_truth ? truth_text(pair) : "") + carried(pair);
+           (with_truth ? truth_text(pair) : "") + carried(pair, column);
 }
 
-/// The columns behind the first that differ, with their mean differences.
+/// That on one filter's two paths behind the first column, and the verdicts.
+std::string further_text(const ComparedPair& pair) {
+    std::string text;
+    for (const auto& [column, conclusion] : pair.further) text += "; " + concluded_text(pair, column, conclusion);
+    if (!pair.a.verdict) return text;
+    return text + "; verdicts: " + pair.comparison.a + " " + verdict_name(*pair.a.verdict) + ", " + pair.comparison.b +
+           " " + verdict_name(*pair.b.verdict);
+}
+
+/// The columns that differ but are not concluded on, with their mean differences. The log score compares filters.
 std::string others_text(const ComparedPair& pair) {
     std::vector<std::string> others;
-    for (const ComparedColumn& column : std::span(pair.comparison.columns).subspan(1))
-        if (differs(column)) {
+    for (std::size_t c = 1; c < pair.comparison.columns.size(); ++c) {
+        const ComparedColumn& column = pair.comparison.columns[c];
+        const bool concluded = std::ranges::any_of(pair.further, [&](const auto& one) { return one.first == c; });
+        if (differs(column) && !concluded && (column.name != "log_score" || !pair.a.verdict)) {
             const double mean = column.paired.difference.mean;
             others.push_back(column.name + (mean < 0 ? " lower by " : " higher by ") +
                              number(std::abs(mean), decimals_of(column.paired)));
         }
+    }
     return others.empty() ? "" : "; besides, " + pair.comparison.a + " has " + joined(others);
 }
 
@@ -207,7 +220,8 @@ std::string compare_head(const CompareReport& report) {
 }
 
 std::string conclusion_text(const ComparedPair& pair) {
-    return steps_text(pair) + failure_conclusion(pair) + first_conclusion(pair) + others_text(pair);
+    return steps_text(pair) + failure_conclusion(pair) + concluded_text(pair, 0, pair.conclusion) + further_text(pair) +
+           others_text(pair);
 }
 
 std::string compare_notes(const CompareReport& report) {
