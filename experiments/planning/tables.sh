@@ -41,14 +41,14 @@ means() {
 
 # difference COMPARED.csv COLUMN: a cell of the mean difference that `credence compare` found, with its 95 % interval.
 # It is bold if it is certain: beyond 3.7 standard errors, Bonferroni's bound for the 216 or 228 numbers of a table
-# together (two-sided, 5 %).
+# together (two-sided, 5 %), or beyond `certain` of them where a study has more.
 difference() {
-  awk -F, -v column="$2" '
+  awk -F, -v column="$2" -v certain="${certain:-3.7}" '
     $4 == column {
       half = 1.96 * $10
       digits = half > 0 ? 1 - int(log(half) / log(10) - (half < 1)) : 4
       if (digits < 0) digits = 0
-      mark = $9 * $9 > 3.7 * 3.7 * $10 * $10 ? "**" : ""
+      mark = $9 * $9 > certain * certain * $10 * $10 ? "**" : ""
       printf "| %s%.*f ± %.*f%s ", mark, digits, $9, digits, half, mark
       exit
     }' "$1"
