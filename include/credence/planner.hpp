@@ -1,6 +1,6 @@
 #pragma once
-// Module worlds: planners of one's own: they choose the controls of arms beside those of the built-in controllers, in the
-// worlds `deformable` and `explore` [docs/planner.md]. experiments/planner has one in C++ and one in Python.
+// Module worlds: planners of one's own: they choose the controls of arms beside those of the built-in controllers, in
+// the worlds `deformable` and `explore` [docs/planner.md]. experiments/planner has one in C++ and one in Python.
 //
 // A planner by a cost, least among the candidates that no wall forbids, is a type P with
 //

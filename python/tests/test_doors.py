@@ -77,16 +77,18 @@ FUNCTIONS = {
 }
 OF_RUN = {
     "trials": [*NO_WHOLE, 0], "seed": [*NO_WHOLE, 2**64], "threads": [*NO_WHOLE, 0], "set": NO_DICT,
-    "sweep": [*NO_DICT, {"noise.heading": 5}], "until": NO_GOALS, "output": NO_OUTPUT, "overwrite": NO_FLAG,
+    "sweep": [*NO_DICT, {"noise.heading": 5}], "planners": [*NO_DICT, {"a.b": print}, {"mine": 5}],
+    "until": NO_GOALS, "output": NO_OUTPUT, "overwrite": NO_FLAG,
     "keep": [*NO_TEXT, "everything"], "force": NO_FLAG, "executor": NO_EXECUTOR, "shards": [*NO_WHOLE, 0],
     "progress": NO_FLAG,
 }  # fmt: skip
 BAD = {
     "run": {"path_or_text": [*NO_PATH, [5]], **OF_RUN},
     "merge": {"paths": [*NO_PATH, [5]], **{one: OF_RUN[one] for one in ("output", "overwrite", "progress")}},
-    "resume": {"study": NO_FILE, **{one: OF_RUN[one] for one in ("trials", "threads", "until", "progress")}},
+    "resume": {"study": NO_FILE,
+               **{one: OF_RUN[one] for one in ("trials", "threads", "planners", "until", "progress")}},
     "replay": {"study": NO_FILE, "scenario": NO_TEXT, "arm": NO_TEXT, "trial": NO_WHOLE, "noise": NO_OUTPUT[:5],
-               **{one: OF_RUN[one] for one in ("set", "output", "overwrite")}},
+               **{one: OF_RUN[one] for one in ("set", "planners", "output", "overwrite")}},
     "report": {"study": NO_FILE, "margin": [*NO_SHARE, 0, 1], "margin_direction": [*NO_SHARE, 0, 1], "bias": NO_SHARE,
                "failed": NO_SHARE},
     "compare": {"arms": [5, b"x", [], {}, True, Odd(), "", [5]], "failed": NO_SHARE},

@@ -178,7 +178,8 @@ void check_planner_repeats(const Simulation& simulation, std::size_t arm, const 
     BlockMemory memory;
     const auto columns_of = [&](std::size_t trials) {
         memory.octets.prepare(simulation.shape(), trials, false);
-        simulation.simulate(arm, memory.octets.batch(root_seed, 0, memory.room.of_size(simulation.workspace_size(arm))));
+        void* room = memory.room.of_size(simulation.workspace_size(arm));
+        simulation.simulate(arm, memory.octets.batch(root_seed, 0, room));
         return memory.octets.columns;
     };
     const std::vector<double> first = columns_of(all), again = columns_of(some);

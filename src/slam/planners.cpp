@@ -59,7 +59,7 @@ std::string planner_value(const std::string& key, const std::string& value) {
 
 std::vector<std::shared_ptr<const Planner>> planners_of(const DeformableSettings& settings) {
     for (const auto& [key, value] : settings.planner.own)
-        if (std::ranges::find(settings.arms.planners, planner_of(key), &OwnPlanner::name) == settings.arms.planners.end())
+        if (std::ranges::count(settings.arms.planners, planner_of(key), &OwnPlanner::name) == 0)
             throw InputError("unknown key " + key + " (arms.planners has no " + planner_of(key) + "). Leave it out, or "
                              "add the planner.");
     std::vector<std::shared_ptr<const Planner>> planners;

@@ -255,7 +255,8 @@ std::vector<OwnPlanner> parse_own_planners(const std::string& value) {
         const std::size_t colon = std::min(given.find(':'), given.size());
         const OwnPlanner planner{given.substr(0, colon), colon < given.size() ? given.substr(colon + 1) : ""};
         if (const std::string why = is_name(planner.name); !why.empty()) refuse("'" + planner.name + "': " + why);
-        if (colon < given.size() && !is_name(planner.version).empty()) refuse("'" + planner.version + "' is no version");
+        if (colon < given.size() && !is_name(planner.version).empty())
+            refuse("'" + planner.version + "' is no version");
         if (std::ranges::find(taken, planner.name) != taken.end())
             refuse("there is a controller " + planner.name + " already");
         taken.push_back(planner.name);

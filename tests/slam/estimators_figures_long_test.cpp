@@ -97,7 +97,7 @@ TEST_CASE("estimators: in lanes, planned and fixed, on few and many features, th
             const Block block = run_block(problem, 3, 20, 13, target);
             for (std::size_t a = 0; a < arms.size(); ++a)
                 for (const std::size_t trial : {0u, 6u, 12u}) {
-                    CAPTURE(positions, target.name, arm_name(arms[a]), trial);
+                    CAPTURE(positions, target.name, arm_name(problem.scenario(), arms[a]), trial);
                     const Trajectory one = replay_trial(problem, arms[a], 3, 20 * block_size + static_cast<int>(trial));
                     for (std::size_t c = 0; c < column_count; ++c)
                         CHECK(same_bits(block.arms[a].columns[c * 13 + trial], one.column_values[c]));

@@ -226,7 +226,7 @@ TEST_CASE("horizon: in lanes the same bits as one trial at a time, on any target
             const Block block = run_block(problem, 3, 21, 13, target);
             for (std::size_t a = 0; a < arms.size(); ++a)
                 for (const std::size_t trial : {0u, 6u, 12u}) {
-                    CAPTURE(described(kind), target.name, arm_name(arms[a]), trial);
+                    CAPTURE(described(kind), target.name, arm_name(problem.scenario(), arms[a]), trial);
                     const Trajectory one = replay_trial(problem, arms[a], 3, 21 * block_size + static_cast<int>(trial));
                     for (std::size_t c = 0; c < column_count; ++c)
                         CHECK(same_bits(block.arms[a].columns[c * 13 + trial], one.column_values[c]));

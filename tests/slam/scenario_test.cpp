@@ -97,6 +97,7 @@ const std::vector<KeyCase>& key_cases() {
          {"fixed", "greedy", "greedy, fixed", "fixed, greedy, horizon", "random, nearest, follow, waypoints"},
          {"fixed, fixed", "best", "fixed,"}},
         {"arms.estimators", "default", {"ekf", "kf"}, {"ukf", "ekf, ekf"}},
+        {"arms.planners", "none", {"mine", "mine:a1, other"}, {"greedy", "a.b", "a, a", "a:"}},
         {"published.trace_P",
          "",
          {"fixed.ekf 0.1061", "fixed.ekf 0.1061, greedy.ekf 0.1034"},

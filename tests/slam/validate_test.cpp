@@ -125,7 +125,7 @@ TEST_CASE("scenario: what was given stays when the rest is filled in, and fillin
 TEST_CASE("scenario: arms are controllers outer, estimators inner, with their names") {
     const auto names = [](const Settings& settings) {
         std::vector<std::string> list;
-        for (const Arm& arm : arms_of(scenario_with(settings))) list.push_back(arm_name(arm));
+        for (const Arm& arm : arms_of(scenario_with(settings))) list.push_back(arm_name(scenario_with(settings), arm));
         return list;
     };
     CHECK(names({}) == std::vector<std::string>{"fixed.ekf", "greedy.ekf"});

@@ -122,13 +122,11 @@ TEST_CASE("own planners: what they are told holds together") {
             for (int j = 0; j < belief.features; ++j)
                 if (belief.known[j]) there.insert(there.end(), {3 + 2 * j, 4 + 2 * j});
                 else ++absent;
-            const Eigen::MatrixXd P = Matrix(then.covariance, n, n)(there, there), before =
-                Matrix(belief.covariance, n, n)(there, there);
+            const Eigen::MatrixXd P = Matrix(then.covariance, n, n)(there, there);
             ++prospects;
             if (prospects % 7 != 0) return;
             CHECK(then.log_det == Approx(std::log(P.determinant())).epsilon(1e-6));
             CHECK(then.trace == Approx(P.trace()).epsilon(1e-9));
-            CHECK(before.llt().info() == Eigen::Success);
             const double angle = belief.mean[0];
             const Point move = then.control.move;
             CHECK(then.control == now->candidate[candidate]);
@@ -195,12 +193,12 @@ TEST_CASE("own planners: a control that is not finite fails its trial, and one t
     const std::size_t count = static_cast<std::size_t>(simulation.shape().column_count);
     for (std::size_t trial = 0; trial < 16; ++trial) {
         const double* of = columns.data() + trial / octet * count * octet + trial % octet;
-        CHECK(of[(count - 2) * octet] == (trial == 9 ? static_cast<int>(Status::non_finite) : 0));
-        CHECK(of[(count - 1) * octet] == (trial == 9 ? 3 : -1));
+        CHECK((of[(count - 2) * octet] == static_cast<int>(Status::non_finite)) == (trial == 9));
+        if (trial == 9) CHECK(of[(count - 1) * octet] == 3);
     }
     settings.arms.planners = {{"changing", ""}};
     CHECK_THAT(refusal([&] { ExploreSimulation(resolved(settings)).check_repeats(5); }),
-               Contains("changing.ekf").And(Contains("goes another way a second time")));
+               Contains("changing.ekf") && Contains("goes another way a second time"));
 }
 
 TEST_CASE("own planners: names, versions and keys are those of the scenario") {

@@ -247,8 +247,8 @@ private:
     ExploreState<Real>& work_;
 };
 
-/// Calls price(i, command, allowed, sees, new cells) for every candidate, with the trials of the pack in its lanes; from
-/// the mean in `still`, as of ExplorePlanner.
+/// Calls price(i, command, allowed, sees, new cells) for every candidate from the mean in `still`, as ExplorePlanner
+/// does, but with the trials of the pack in the lanes.
 template <class Real, class Work, class Price>
 void each_candidate_ahead(const ExploreView& problem, Work& work, const Price& price) {
     const Real* mean = work.planner.still.mean;
