@@ -5,6 +5,8 @@
 #include "oracle/oracle.hpp"
 
 #include "worlds/deformable/deformable.hpp"
+#include <credence/text.hpp>
+
 #include <credence/detail/draws.hpp>
 #include "slam/world.hpp"
 

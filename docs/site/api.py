@@ -15,7 +15,9 @@ SECTIONS = {
     "Trials of a filter": ("simulate", "Run", "Simulation"),
     "What to change": ("tune", "Tuned"),
     "Why": ("budget", "Budget"),
-    "Studies of scenarios": ("run", "resume", "merge", "show", "report", "compare", "replay", "Report", "Comparison", "Now", "Prospects"),
+    "Studies of scenarios": (
+        "run", "resume", "merge", "show", "report", "compare", "replay", "Report", "Comparison", "Now", "Prospects",
+    ),
     "Files": ("open", "Study", "Scenario", "Arm", "open_trajectories", "Trajectory"),
     "Pictures": ("plot", "animate"),
     "Errors": ("InputError", "Failure", "Interrupted"),

@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from credence._calls import note
-from credence._errors import invalid, wrong
+from credence._errors import invalid
 
 if TYPE_CHECKING:
     from credence._core import Told
@@ -195,7 +195,7 @@ def asked(planners: Mapping[str, Callable[[Now], Any]] | None) -> dict[str, tupl
     if planners is None:
         return {}
     if not isinstance(planners, Mapping):
-        raise wrong("planners", f"{planners!r} is no dict", 'Give {"mine": function}')
+        raise invalid("planners", planners, "it is no dict", 'Give {"mine": function}')
     for name, choose in planners.items():
         if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z0-9_-]{1,100}", name):
             raise invalid("planners", name, "only letters, digits, _ and - are allowed", "Give another name")

@@ -6,6 +6,7 @@
 
 #include "filter_samples.hpp"
 
+#include <credence/text.hpp>
 #include "slam/condition.hpp"
 
 #include <vector>
