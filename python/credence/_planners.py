@@ -215,6 +215,3 @@ def note_failures(planners: Mapping[str, tuple[str, Asked]]) -> None:
             first = min(one.failures)
             count = len(one.failures)
             note(f"planner {name} failed in {count} trials; the first is trial {first}, at {one.failures[first]}")
-
-
-__all__ = ["Asked", "Draws", "Now", "Prospects", "asked", "note_failures", "setting_of"]

@@ -12,6 +12,7 @@ from typing import Any
 
 from credence import Failure, _core
 from credence._calls import progress_bar
+from credence._planners import note_failures
 from credence._workers import TRIES, Workers
 
 Scenarios = list[tuple[str, str]]  # the name and the text of each file
@@ -30,6 +31,7 @@ def run_shard(shared: tuple[Scenarios, dict[str, object], dict[str, Any]], shard
         part = os.path.join(folder, "part.h5")
         of_shard = {**options, "shard": f"{shard}/{shards}", "output": part, "quiet": True}
         code, _, said = _core.command("run", paths, of_shard, None, planners)
+        note_failures(planners)
         if code != 0:
             raise Failure(f"shard {shard} of {shards}: it was stopped ({said.strip()}). Run it again.")
         return Path(part).read_bytes()
