@@ -195,8 +195,10 @@ TEST_CASE("scenario: every key refuses what is out of range, naming itself") {
 TEST_CASE("scenario: every key that is no text refuses garbage") {
     for (const KeyCase& one : key_cases()) {
         if (one.name == "scenario.name" || one.name == "scenario.title" || one.name == "scenario.length_unit") continue;
-        for (const char* value : {"garbage", "nan", "1 x", "1;2", "\"1\"", "0x10", "1e400", ";"})
-            check_refused(one.name, value);
+        for (const char* value : {"1 x", "1;2", "\"1\"", ";"}) check_refused(one.name, value);
+        // Any word is a name of a planner.
+        if (one.name != "arms.planners")
+            for (const char* value : {"garbage", "nan", "0x10", "1e400"}) check_refused(one.name, value);
         if (!one.name.starts_with("published.")) check_refused(one.name, "");
     }
 }
