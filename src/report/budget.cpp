@@ -42,6 +42,9 @@ std::string part_text(const BudgetPart& part, bool counts) {
     text += part.closes ? "\n" : ": they do not meet, as three sources or more interact\n";
     if (!std::isnan(part.p_says))
         text += formatted("  P says %.4g: the squared error is %.0f %% of it\n", part.p_says, 100 * part.ratio);
+    if (part.there < 1)
+        text += formatted("  %.3g %% of its errors are left out: in some run it was not in the state\n",
+                          100 * (1 - part.there));
     return text;
 }
 
@@ -64,7 +67,8 @@ Json part_json(const BudgetPart& part) {
             {"rmse", part.rmse},
             {"closes", part.closes},
             {"p_says", part.p_says},
-            {"ratio", part.ratio}};
+            {"ratio", part.ratio},
+            {"there", part.there}};
 }
 
 std::string budget_text(const BudgetReport& report) {

@@ -84,8 +84,7 @@ void hint_at_budget(Report& report) {
     });
     if (refuted == report.arms.end()) return;
     const Scenario& scenario = *std::ranges::find(report.scenarios, refuted->scenario, &Scenario::name);
-    // A program without this world says the same of it, and so does not ask whether it names its sources.
-    if (scenario.settings.empty() || scenario.world == "explore") return;
+    if (scenario.settings.empty()) return;
     refuted->consistency.hints.push_back("the command `budget` tells which source of noise its error is of, and what "
                                          "P counts for it");
 }

@@ -16,19 +16,26 @@ using Numbers = std::vector<double>;
 
 double root(double square) { return square > 0 ? std::sqrt(square) : 0; }
 
-/// Errors of a component about their mean over the trials at each step. [trials, steps]
+/// Errors of a component about their mean over the trials at each step. [trials, steps] Those that are not there are 0,
+/// and the others so much larger that the mean square is that of what is there.
 struct Centred {
     Numbers value, mean;  ///< mean [steps]
 };
 
-Centred centred(Numbers values, std::size_t steps) {
+Centred centred(Numbers values, std::size_t steps, const std::vector<char>& there) {
     const std::size_t trials = values.size() / steps;
     Numbers mean(steps);
+    double degrees = 0;
     for (std::size_t k = 0; k < steps; ++k) {
-        for (std::size_t i = 0; i < trials; ++i) mean[k] += values[i * steps + k];
-        mean[k] /= static_cast<double>(trials);
-        for (std::size_t i = 0; i < trials; ++i) values[i * steps + k] -= mean[k];
+        double count = 0;
+        for (std::size_t i = k; i < values.size(); i += steps)
+            if (there.empty() || there[i]) mean[k] += values[i], ++count;
+        if (count > 0) mean[k] /= count, degrees += count - 1;
+        for (std::size_t i = k; i < values.size(); i += steps)
+            values[i] = there.empty() || there[i] ? values[i] - mean[k] : 0;
     }
+    const double factor = degrees > 0 ? std::sqrt(static_cast<double>((trials - 1) * steps) / degrees) : 0;
+    for (double& value : values) value *= factor;
     return {std::move(values), std::move(mean)};
 }
 
@@ -61,8 +68,9 @@ public:
         for (int i = 0; i < members.count; ++i) members_.push_back(static_cast<std::size_t>(members.component(i)));
         part_.name = members.name;
         part_.unit = errors.components[members_.front()].unit;
-        double square_of_mean = 0;
+        double square_of_mean = 0, there = 0;
         for (const std::size_t j : members_) {
+            there += share_of(j);
             a_.push_back(read(0, j));
             b_.push_back(read(1, j));
             const Centred &a = a_.back(), &b = b_.back();
@@ -71,8 +79,11 @@ public:
             for (std::size_t k = 0; k < errors.steps; ++k)
                 square_of_mean += std::pow((a.mean[k] + b.mean[k]) / 2, 2) / static_cast<double>(errors.steps);
         }
+        part_.there = there / static_cast<double>(members_.size());
         variance_ = estimate_of(own_).value;
-        square_of_mean_ = std::max(0.0, square_of_mean - variance_ / 2 / static_cast<double>(errors.trials));
+        if (part_.there > 0)
+            square_of_mean_ = std::max(
+                0.0, square_of_mean - variance_ / 2 / (part_.there * static_cast<double>(errors.trials)));
     }
 
     BudgetPart made() {
@@ -93,7 +104,16 @@ public:
 
 private:
     Centred read(std::size_t run, std::size_t component) const {
-        return centred(errors_.of(run, component), errors_.steps);
+        return centred(errors_.of(run, component), errors_.steps, there(component));
+    }
+
+    const std::vector<char>& there(std::size_t component) const {
+        static const std::vector<char> all;
+        return errors_.there.empty() ? all : errors_.there[component];
+    }
+    double share_of(std::size_t component) const {
+        const std::vector<char>& own = there(component);
+        return own.empty() ? 1 : static_cast<double>(std::ranges::count(own, 1)) / static_cast<double>(own.size());
     }
 
     /// Adds the contribution of a source, and (V + T)/2 of each trial to `met`. Returns (T - V)/2.

@@ -33,6 +33,7 @@ struct BudgetPart {
     double interactions = 0;  ///< root of half the sum of T - V: an upper bound where no three sources interact
     double rss = 0, rmse = 0; ///< root of what contributions and mean add up to; root mean square error of A and B
     bool closes = false;      ///< these agree within three standard errors
+    double there = 1;         ///< share of its errors that there are in every run; the others are left out
     double p_says = 0, ratio = 0;  ///< root of the variance that P says, and the squared error over it; NaN: not known
 };
 
@@ -44,6 +45,8 @@ struct BudgetErrors {
     std::vector<ComponentGroup> groups;
     /// [trials, steps] errors of a component in a run. Asked for one after the other, so that few are in memory.
     std::function<std::vector<double>(std::size_t run, std::size_t component)> of;
+    /// [n][trials, steps] where a component is in the state in every run; empty where all always are.
+    std::vector<std::vector<char>> there{};
     std::vector<double> variance{};   ///< [n] P_jj of A, mean over trials and steps; empty where not known
     std::vector<std::string> counted{};                  ///< the sources that P counts
     std::vector<std::vector<double>> counted_variance{}; ///< [counted][n] of some trials of A

@@ -7,6 +7,7 @@
 #include "base/wording.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace credence {
 
@@ -93,10 +94,17 @@ ArmBudget budget_of(const Worlds& worlds, std::size_t arm, std::uint64_t root_se
     };
     errors.of = [&](std::size_t run, std::size_t component) { return read(*worlds[run], false, component); };
     for (std::size_t j = 0; j < n; ++j) {
-        double sum = 0;
+        std::vector<char> there(errors.trials * errors.steps, 1);
+        for (const ScenarioResults* world : worlds) {  // what is absent from the state has no error
+            const std::vector<double> values = read(*world, false, j);
+            for (std::size_t i = 0; i < values.size(); ++i) there[i] = there[i] && !std::isnan(values[i]);
+        }
+        double sum = 0, count = 0;
         const std::vector<double> variances = read(own, true, j);
-        for (const double variance : variances) sum += variance;
-        errors.variance.push_back(sum / static_cast<double>(variances.size()));
+        for (std::size_t i = 0; i < variances.size(); ++i)
+            if (there[i]) sum += variances[i], ++count;
+        errors.variance.push_back(count > 0 ? sum / count : 0);
+        errors.there.push_back(std::move(there));
     }
     CountedVariances counted = simulation_of(scenario)->counted(arm, root_seed, own.trials);
     budget.counted_trials = counted.trials;

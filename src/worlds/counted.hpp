@@ -55,6 +55,10 @@ public:
     template <class... Anything>
     void planned(const Anything&...) {}
     template <class... Anything>
+    void priced(const Anything&...) {}
+    template <class... Anything>
+    void explored(const Anything&...) {}
+    template <class... Anything>
     void predicted(const Anything&...) {}
     template <class Layout, class Belief>
     void updated(int k, const Layout& layout, const Belief& belief, const double*) {
@@ -70,44 +74,56 @@ public:
             view_.kept_steps + view_.kept_count)
             return;
         const double factor = view_.filter.covariance_factor / view_.kept_count;
-        for (std::size_t s = 0; s < estimator_.parts().size(); ++s)
-            for (int i = 0; i < n; ++i)
-                sum_.variance[s][static_cast<std::size_t>(i)] += factor * estimator_.parts()[s].covariance.entry[i][i];
+        for (int i = 0; i < n; ++i) {
+            if (P.entry[i][i] <= view_.growth.absent_variance) continue;
+            ++there_[static_cast<std::size_t>(i)];
+            for (std::size_t s = 0; s < estimator_.parts().size(); ++s)
+                sum_.variance[s][static_cast<std::size_t>(i)] +=
+                    factor * estimator_.parts()[s].covariance.entry[i][i];
+        }
     }
     /// The largest |P - sum of P_s| of an entry, relative to the standard deviations of its components.
     double largest_rest() const { return largest_rest_; }
+    /// The share of the steps at which component i is in the state.
+    double there(std::size_t i) const { return 1.0 * there_[i] / view_.kept_count; }
 
 private:
     const CommonView& view_;
     const Attributing& estimator_;
     CountedVariances& sum_;
+    std::vector<int> there_ = std::vector<int>(static_cast<std::size_t>(view_.state_size));
     double largest_rest_ = 0;
 };
 
-/// The mean over the first trials that complete. `run(trial, estimator, observer, columns)` runs one.
+/// The mean over the first trials that complete, of a component over the steps at which it is in the state.
+/// `run(trial, observer, columns)` runs one, which has so many columns, the status the last but one.
 template <class Attributing, class Run>
 CountedVariances count_variances(const CommonView& view, const std::vector<CountedSource>& sources,
-                                 Attributing& estimator, std::int64_t trials, const Run& run) {
+                                 Attributing& estimator, std::int64_t trials, int column_count, const Run& run) {
     constexpr double largest_rest = 1e-6;
     const auto n = static_cast<std::size_t>(view.state_size);
     CountedVariances none{{}, std::vector<std::vector<double>>(sources.size(), std::vector<double>(n)), 0}, mean = none;
     for (const CountedSource& source : sources) mean.sources.push_back(source.name);
+    std::vector<double> columns(static_cast<std::size_t>(column_count)), there(n);
     for (std::int64_t trial = 0; trial < counted_trials(view, trials); ++trial) {
         CountedVariances one = none;
-        double columns[column_count];
         estimator.attribute(sources);
         PartsOfTrial<Attributing> parts(view, estimator, one);
-        run(trial, parts, columns);
-        if (columns[column_status] != 0) continue;
+        run(trial, parts, columns.data());
+        if (columns.end()[-2] != 0) continue;
         if (!(parts.largest_rest() <= largest_rest))
             throw Failure("cannot tell what P counts for each source",
                           "in trial " + std::to_string(trial) + " they differ from P by " +
                               to_text(parts.largest_rest()) + " of it",
                           "An estimator may not condition P by take_in and turn_covariance alone");
         ++mean.trials;
-        for (std::size_t s = 0; s < sources.size(); ++s)
-            for (std::size_t i = 0; i < n; ++i)
-                mean.variance[s][i] += (one.variance[s][i] - mean.variance[s][i]) / static_cast<double>(mean.trials);
+        for (std::size_t i = 0; i < n; ++i) {
+            const double share = parts.there(i);
+            if (share == 0) continue;
+            there[i] += share;
+            for (std::size_t s = 0; s < sources.size(); ++s)
+                mean.variance[s][i] += (one.variance[s][i] - share * mean.variance[s][i]) / there[i];
+        }
     }
     return mean;
 }

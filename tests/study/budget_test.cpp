@@ -4,12 +4,14 @@
 #include "matched.hpp"
 #include "study/budget.hpp"
 #include "support.hpp"
+#include "worlds/explore/explore.hpp"
 #include "worlds/landmarks/landmarks.hpp"
 
 #include <credence/detail/draws.hpp>
 #include <credence/text.hpp>
 
 #include <cmath>
+#include <random>
 #include <set>
 
 namespace credence::test::budget_test {
@@ -111,7 +113,7 @@ TEST_CASE("budget: of a linear filter that is right, every source is what P coun
     }
 }
 
-TEST_CASE("budget: what P counts for the sources adds up to P, for every estimator of both worlds") {
+TEST_CASE("budget: what P counts for the sources adds up to P, for every estimator of every world") {
     DeformableSettings settings = scenario_with({{"noise.heading", "0.05"}, {"features.path", "circle"},
                                                  {"arms.estimators", "ekf, ideal, fej, riekf, iekf"},
                                                  {"noise.initial_heading", "0.1"}, {"sensor.detection", "0.8"},
@@ -124,7 +126,22 @@ TEST_CASE("budget: what P counts for the sources adds up to P, for every estimat
     landmarks.landmarks.count = 8;
     landmarks.loop.sides = 20;
     landmarks.budget.errors = KeptErrors::mean;
-    for (const Scenario& scenario : {scenario_of(settings), scenario_of(landmarks)})
+    ExploreSettings explore;
+    explore.poses = 12;
+    explore.features.count = 6;
+    explore.features.extent = 8;
+    explore.noise.initial_heading = 0.1;
+    explore.sensor.detection = 0.8;
+    explore.filter.gate = 0.99;
+    explore.filter.measurement = 1.3;
+    explore.walls = {{{2, -4}, {2, 3}}};
+    explore.arms.estimators = {Estimator::ekf, Estimator::ideal, Estimator::fej, Estimator::riekf, Estimator::iekf};
+    explore.budget.errors = KeptErrors::mean;
+    ExploreSettings with_prior = explore, known = explore;
+    with_prior.map = LandmarkMap::prior;
+    known.map = LandmarkMap::known;
+    for (const Scenario& scenario : {scenario_of(settings), scenario_of(landmarks), scenario_of(resolved(explore)),
+                                     scenario_of(resolved(with_prior)), scenario_of(resolved(known))})
         for (std::size_t arm = 0; arm < scenario.arms.size(); ++arm) {
             CAPTURE(scenario.arms[arm]);
             const CountedVariances counted = simulation_of(scenario)->counted(arm, 3, 40);  // or it throws
@@ -132,22 +149,74 @@ TEST_CASE("budget: what P counts for the sources adds up to P, for every estimat
             const Study study = study_with({scenario}, 40);
             const ScenarioResults& results = study.scenarios.front();
             const std::size_t n = scenario.components.size(),
-                              steps = kept_steps(KeptErrors::mean, results.steps()).size();
+                              steps = kept_steps(KeptErrors::mean, results.steps()).size(),
+                              first = results.columns.size() - 2 - 2 * steps * n;
             for (std::size_t j = 0; j < n; ++j) {
-                double sum = 0, says = 0;
+                double sum = 0, says = 0, there = 0;
                 for (const std::vector<double>& variance : counted.variance) sum += variance[j];
-                for (std::size_t k = 0; k < steps; ++k)
-                    for (const double variance :
-                         column_values(results, results.arms[arm], column_count - 2 + (steps + k) * n + j))
-                        says += variance / static_cast<double>(40 * steps);
-                CHECK(sum == Approx(says).epsilon(1e-9));
+                for (std::size_t k = 0; k < steps; ++k) {
+                    const auto at = [&](std::size_t row) {
+                        return column_values(results, results.arms[arm], first + row * n + j);
+                    };
+                    const std::vector<double> errors = at(k), variances = at(steps + k);
+                    for (std::size_t i = 0; i < errors.size(); ++i)
+                        if (!std::isnan(errors[i])) says += variances[i], ++there;
+                }
+                CHECK(sum == Approx(there > 0 ? says / there : 0).epsilon(1e-9));
             }
         }
 }
 
 TEST_CASE("budget: the numbers are the same on any number of threads") {
-    const std::vector<Scenario> worlds = budget_scenarios(scenario_of(matched_linear()), KeptErrors::last);
-    CHECK(numbers_of(budgets_of(study_with(worlds, 600, 1))) == numbers_of(budgets_of(study_with(worlds, 600, 3))));
+    ExploreSettings explore;
+    explore.poses = 6;
+    for (const Scenario& scenario : {scenario_of(matched_linear()), scenario_of(resolved(explore))}) {
+        const std::vector<Scenario> worlds = budget_scenarios(scenario, KeptErrors::last);
+        const std::vector<double> one = numbers_of(budgets_of(study_with(worlds, 600, 1))),
+                                  three = numbers_of(budgets_of(study_with(worlds, 600, 3)));
+        REQUIRE(one.size() == three.size());
+        for (std::size_t i = 0; i < one.size(); ++i)
+            CHECK((one[i] == three[i] || (std::isnan(one[i]) && std::isnan(three[i]))));
+    }
+}
+
+TEST_CASE("budget: of a component that is absent in some trials it is that of the other trials alone") {
+    std::mt19937_64 rng(4);
+    std::normal_distribution<double> normal;
+    constexpr std::size_t trials = 200, runs = 6;
+    std::vector<std::vector<double>> errors(runs, std::vector<double>(trials)), some(runs);
+    std::vector<char> there(trials);
+    for (std::size_t i = 0; i < trials; ++i) {
+        there[i] = i % 3 != 1;
+        const double u[] = {normal(rng), normal(rng)}, v[] = {normal(rng), normal(rng)};
+        const double all[] = {u[0] + v[0], u[1] + v[1], u[1] + v[0], u[0] + v[1], u[0] + v[1], u[1] + v[0]};
+        for (std::size_t run = 0; run < runs; ++run) {
+            errors[run][i] = there[i] ? 0.3 + all[run] : std::nan("");
+            if (there[i]) some[run].push_back(0.3 + all[run]);
+        }
+    }
+    const auto budget = [](const std::vector<std::vector<double>>& all, std::vector<std::vector<char>> mask) {
+        BudgetErrors one{{"u", "v"}, all.front().size(), 1, {{"x", "m"}}, {},
+                         [&](std::size_t run, std::size_t) { return all[run]; }};
+        one.there = std::move(mask);
+        one.variance = {1.7};
+        return budget_parts(one).front();
+    };
+    const BudgetPart whole = budget(errors, {there}), rest = budget(some, {});
+    CHECK(whole.there == Approx(133 / 200.0));
+    CHECK(rest.there == 1);
+    CHECK(whole.mean == Approx(rest.mean));  // the same sums in another order
+    CHECK(whole.rss == Approx(rest.rss));
+    CHECK(whole.rmse == Approx(rest.rmse));
+    CHECK(whole.ratio == Approx(rest.ratio));
+    REQUIRE(whole.contributions.size() == 2);
+    for (std::size_t s = 0; s < 2; ++s) {
+        CHECK(whole.contributions[s].alone == Approx(rest.contributions[s].alone));
+        CHECK(whole.contributions[s].with_others == Approx(rest.contributions[s].with_others));
+        CHECK(whole.contributions[s].share == Approx(rest.contributions[s].share));
+        const Interval &own = whole.contributions[s].alone95, &of_rest = rest.contributions[s].alone95;
+        CHECK(own.high - own.low == Approx(of_rest.high - of_rest.low).epsilon(0.15));  // that the share is drawn, too
+    }
 }
 
 TEST_CASE("budget: worlds that are there already, or are missing, are refused") {

@@ -29,22 +29,7 @@ struct Deformable {
         for (const Arm& arm : arms_of(settings)) scenario.arms.push_back(arm_name(settings, arm));
     }
     std::vector<DrawSource> sources(const Settings& settings) const {
-        const NoiseSettings& noise = settings.noise;
-        const std::map<std::string, bool> drawn{{"start", noise.initial_heading > 0 || noise.initial_position > 0},
-                                                {"odometry", noise.odometry > 0},
-                                                {"heading", settings.process == Process::heading && noise.heading > 0},
-                                                {"measurement", true},
-                                                {"walk", noise.walk > 0},
-                                                {"deformation", noise.deformation > 0},
-                                                {"edges", settings.truth.edge_noise == EdgeNoise::independent},
-                                                {"detection", settings.sensor.detection < 1},
-                                                {"outliers", noise.measurement_tails == Tails::contaminated},
-                                                {"placement", settings.features.placement != Placement::given},
-                                                {"bias", noise.odometry_bias > 0},
-                                                {"control", has_arm(settings, Controller::random)}};
-        std::vector<DrawSource> sources = slam_sources();
-        std::erase_if(sources, [&](const DrawSource& source) { return !drawn.at(source.name); });
-        return sources;
+        return drawn_sources(settings, false, has_arm(settings, Controller::random));
     }
     std::vector<Column> columns(const Settings& settings, const Scenario&) const { return trial_columns(settings); }
     std::vector<Series> all_series(const Settings& settings, const Scenario&) const { return step_series(settings); }
@@ -54,6 +39,26 @@ struct Deformable {
 };
 
 }  // namespace
+
+std::vector<DrawSource> drawn_sources(const DeformableSettings& settings, bool prior, bool control) {
+    const NoiseSettings& noise = settings.noise;
+    const std::map<std::string, bool> drawn{
+        {"start", prior || noise.initial_heading > 0 || noise.initial_position > 0},
+        {"odometry", noise.odometry > 0},
+        {"heading", settings.process == Process::heading && noise.heading > 0},
+        {"measurement", true},
+        {"walk", noise.walk > 0},
+        {"deformation", noise.deformation > 0},
+        {"edges", settings.truth.edge_noise == EdgeNoise::independent},
+        {"detection", settings.sensor.detection < 1},
+        {"outliers", noise.measurement_tails == Tails::contaminated},
+        {"placement", settings.features.placement != Placement::given},
+        {"bias", noise.odometry_bias > 0},
+        {"control", control}};
+    std::vector<DrawSource> sources = slam_sources();
+    std::erase_if(sources, [&](const DrawSource& source) { return !drawn.at(source.name); });
+    return sources;
+}
 
 std::unique_ptr<const World> deformable_world() { return std::make_unique<WorldOf<Deformable>>(); }
 

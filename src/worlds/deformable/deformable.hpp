@@ -17,6 +17,10 @@ std::unique_ptr<const World> deformable_world();
 Scenario scenario_of(const DeformableSettings& settings);
 DeformableSettings settings_of(const Scenario& scenario);
 
+/// The sources that trials of these settings draw from. `prior`, `control`: whether a prior of landmarks and controls
+/// are drawn, too.
+std::vector<DrawSource> drawn_sources(const DeformableSettings& settings, bool prior, bool control);
+
 /// The trials of a problem on a unit.
 class DeformableSimulation : public Simulation {
 public:

@@ -100,11 +100,16 @@ CountedVariances count(const Problem& problem, const Arm& arm, std::uint64_t roo
             using Estimating =
                 Attributed<typename decltype(estimator)::template type<StateLayout, double>, StateLayout>;
             const auto work = std::make_unique<Workspace<StateLayout, double, Estimating>>();
-            return count_variances(view, sources, work->estimator, trials,
+            return count_variances(view, sources, work->estimator, trials, column_count,
                                    [&](std::int64_t trial, auto& observer, double* columns) {
                 const KeyedDraws<double> draws(root_seed, static_cast<std::uint64_t>(trial), view.world.truncate,
                                                view.other);
-                run_trial(view, arm.controller, draws, observer, *work, columns, all_series.data());
+                std::vector<Command<double>> commands;
+                if (arm.planner >= 0)
+                    commands = commands_of<DeformableTrial<StateLayout, double, decltype(estimator)>>(
+                        view, arm.planner, root_seed, trial);
+                run_trial(view, arm.controller, draws, observer, *work, columns, all_series.data(),
+                          commands.empty() ? nullptr : commands.data());
             });
         });
     };
@@ -115,7 +120,6 @@ CountedVariances count(const Problem& problem, const Arm& arm, std::uint64_t roo
 }  // namespace
 
 CountedVariances DeformableSimulation::counted(std::size_t arm, std::uint64_t root_seed, std::int64_t trials) const {
-    if (arms_[arm].planner >= 0) return {};
     return count(*problem_, arms_[arm], root_seed, trials);
 }
 

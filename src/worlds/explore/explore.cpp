@@ -1,8 +1,11 @@
 #include "worlds/explore/explore.hpp"
 
 #include "engine/octets.hpp"
+#include "worlds/deformable/deformable.hpp"
 #include "worlds/values.hpp"
 #include <credence/detail/world_of.hpp>
+
+#include <algorithm>
 
 namespace credence {
 
@@ -27,7 +30,10 @@ struct Explore {
         scenario.groups = explore_groups(settings);
         for (const ExploreArm& arm : arms_of(settings)) scenario.arms.push_back(arm_name(settings, arm));
     }
-    std::vector<DrawSource> sources(const Settings&) const { return {}; }
+    std::vector<DrawSource> sources(const Settings& settings) const {
+        return drawn_sources(settings, settings.map == LandmarkMap::prior,
+                             std::ranges::count(settings.explorers, Explorer::random) > 0);
+    }
     std::vector<Column> columns(const Settings& settings, const Scenario&) const { return explore_columns(settings); }
     std::vector<Series> all_series(const Settings& settings, const Scenario&) const { return explore_series(settings); }
     std::unique_ptr<const Simulation> simulation(const Settings& settings, const Scenario&) const {
@@ -54,7 +60,8 @@ std::vector<ExploreArm> arms_of(const ExploreSettings& settings) {
 ExploreSimulation::ExploreSimulation(const ExploreSettings& settings, Target target)
     : problem_(settings), target_(std::move(target)), arms_(arms_of(settings)) {
     const ExploreView& view = problem_.view();
-    shape_ = {view.poses, view.state_size, explore_column_count, view.series_count, view.group_count};
+    shape_ = {view.poses, view.state_size, explore_column_count + view.error_columns(), view.series_count,
+              view.group_count};
 }
 
 std::size_t ExploreSimulation::workspace_size(std::size_t arm) const {

@@ -33,6 +33,7 @@ public:
     void check_repeats(std::uint64_t root_seed) const override;
     Trajectory replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,
                       std::int64_t trial) const override;
+    CountedVariances counted(std::size_t arm, std::uint64_t root_seed, std::int64_t trials) const override;
 
 private:
     ExploreProblem problem_;

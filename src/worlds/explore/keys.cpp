@@ -108,6 +108,7 @@ std::vector<ExploreKey> all_keys() {
     }
     for (ExploreKey& key : own_keys()) keys.push_back(std::move(key));
     std::ranges::stable_sort(keys, {}, rank);
+    add_budget_keys(keys, slam_sources());
     return keys;
 }
 

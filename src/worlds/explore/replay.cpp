@@ -2,6 +2,7 @@
 
 #include "worlds/deformable/deformable.hpp"
 #include "worlds/explore/pack_trial.hpp"
+#include "worlds/counted.hpp"
 #include "worlds/slam_recorder.hpp"
 
 #include <limits>
@@ -67,6 +68,45 @@ private:
     ExploreVariables own_;
 };
 
+/// The workspace of single trials, with room for the cells and for the series.
+template <class Estimating>
+class SingleTrials {
+public:
+    explicit SingleTrials(const ExploreView& view)
+        : view_(view), viewed_(std::make_unique<bool[]>(static_cast<std::size_t>(view.grid.count()))),
+          queue_(static_cast<std::size_t>(view.grid.count())), from_(queue_.size()),
+          all_series_(static_cast<std::size_t>(view.series_count) * static_cast<std::size_t>(view.poses - 1)) {
+        work_->viewed = viewed_.get();
+        work_->queue = queue_.data();
+        work_->from = from_.data();
+    }
+    Estimating& estimator() { return work_->estimator; }
+    template <class Observer>
+    void run(Explorer controller, const std::vector<Command<double>>& commands, std::uint64_t root_seed,
+             std::int64_t trial, Observer& observer, double* columns) {
+        const KeyedDraws<double> draws(root_seed, static_cast<std::uint64_t>(trial), view_.world.truncate,
+                                       view_.other);
+        run_trial(view_, controller, draws, observer, *work_, columns, all_series_.data(),
+                  commands.empty() ? nullptr : commands.data());
+    }
+
+private:
+    const ExploreView& view_;
+    std::unique_ptr<bool[]> viewed_;
+    std::vector<int> queue_, from_;
+    std::vector<double> all_series_;
+    std::unique_ptr<ExploreWorkspace<double, Estimating>> work_ =
+        std::make_unique<ExploreWorkspace<double, Estimating>>();
+};
+
+/// What a planner of one's own commands in a trial; nothing of other arms.
+template <class Tag>
+std::vector<Command<double>> commands(const ExploreView& view, const ExploreArm& arm, Tag, std::uint64_t root_seed,
+                                      std::int64_t trial) {
+    if (arm.planner < 0) return {};
+    return commands_of<ExploreTrial<double, Tag>>(view, arm.planner, root_seed, trial);
+}
+
 }  // namespace
 
 Trajectory ExploreSimulation::replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,
@@ -80,26 +120,29 @@ Trajectory ExploreSimulation::replay(const Scenario& scenario, std::size_t arm, 
     const bool plans = arms_[arm].controller == Explorer::greedy || arms_[arm].controller == Explorer::informed;
     ExploreRecorder recorder(view, variables, add_explore_variables(trajectory, settings, view.grid, plans),
                              trajectory);
-    std::vector<double> all_series(static_cast<std::size_t>(view.series_count) *
-                                   static_cast<std::size_t>(view.poses - 1));
-    const auto cells = static_cast<std::size_t>(view.grid.count());
-    const auto viewed = std::make_unique<bool[]>(cells);
-    std::vector<int> queue(cells), from(cells);
-    const KeyedDraws<double> draws(root_seed, static_cast<std::uint64_t>(trial), view.world.truncate);
     with_estimator<Process::heading>(arms_[arm].estimator, [&](auto estimator) {
-        using Trial = ExploreTrial<double, decltype(estimator)>;
-        std::vector<Command<double>> commands;
-        if (const int planner = arms_[arm].planner; planner >= 0)
-            commands = commands_of<Trial>(view, planner, root_seed, trial);
-        const auto work = std::make_unique<ExploreWorkspaceOf<double, decltype(estimator)>>();
-        work->viewed = viewed.get();
-        work->queue = queue.data();
-        work->from = from.data();
-        run_trial(view, arms_[arm].controller, draws, recorder, *work, trajectory.column_values.data(),
-                  all_series.data(), commands.empty() ? nullptr : commands.data());
+        using Estimating = typename decltype(estimator)::template type<ExploreLayout, double>;
+        SingleTrials<Estimating>(view).run(arms_[arm].controller, commands(view, arms_[arm], estimator, root_seed, trial),
+                                           root_seed, trial, recorder, trajectory.column_values.data());
     });
     fill_failed(trajectory.columns, trajectory.column_values.data());
     return trajectory;
+}
+
+CountedVariances ExploreSimulation::counted(std::size_t arm, std::uint64_t root_seed, std::int64_t trials) const {
+    const ExploreView& view = problem_.view();
+    const std::vector<CountedSource> sources =
+        counted_sources(view.filter, 0, view.map == LandmarkMap::known ? "measurement" : "start");
+    return with_estimator<Process::heading>(arms_[arm].estimator, [&](auto estimator) {
+        using Estimating =
+            Attributed<typename decltype(estimator)::template type<ExploreLayout, double>, ExploreLayout>;
+        SingleTrials<Estimating> single(view);
+        return count_variances(view, sources, single.estimator(), trials, explore_column_count,
+                               [&](std::int64_t trial, auto& observer, double* columns) {
+            single.run(arms_[arm].controller, commands(view, arms_[arm], estimator, root_seed, trial), root_seed, trial,
+                       observer, columns);
+        });
+    });
 }
 
 }  // namespace credence

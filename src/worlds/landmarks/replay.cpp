@@ -40,7 +40,7 @@ CountedVariances LandmarkSimulation::counted(std::size_t arm, std::uint64_t root
         using StateLayout = Layout<Process::heading, any_count>;
         using Estimating = Attributed<typename decltype(estimator)::template type<StateLayout, double>, StateLayout>;
         const auto work = std::make_unique<CommonWorkspace<StateLayout, double, Estimating>>();
-        return count_variances(view, counted_sources(view.filter, 0, "start"), work->estimator, trials,
+        return count_variances(view, counted_sources(view.filter, 0, "start"), work->estimator, trials, column_count,
                                [&](std::int64_t trial, auto& observer, double* columns) {
             const KeyedDraws<double> draws(root_seed, static_cast<std::uint64_t>(trial),
                                            std::numeric_limits<double>::infinity(), view.other);
