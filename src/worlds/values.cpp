@@ -249,6 +249,7 @@ std::vector<OwnPlanner> parse_own_planners(const std::string& value) {
     const auto refuse = [&](const std::string& what) {
         throw invalid_value("arms.planners", value, what, "Give names of letters, digits, _ and -, such as `mine`");
     };
+    if (split_list(value).empty()) refuse("it is empty");
     std::vector<std::string> taken = controller_names();
     for (const char* name : {"frontier", "informed"}) taken.push_back(name);
     for (const std::string& given : split_list(value)) {
