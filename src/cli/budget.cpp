@@ -27,7 +27,7 @@ const Command& budget_command() {
          set_option(),
          sweep_option(),
          {"quiet", "", "no progress"},
-         format_option({"text", "json", "csv"}),
+         format_option({"text", "json", "csv", "html"}),
          output_option("write there, not to the standard output"),
          overwrite_option()},
         [](const Parsed& parsed) { return give(parsed, budgeted); }};
@@ -75,7 +75,9 @@ Rendering budgeted(const Parsed& parsed) {
     const bool is_stored = kind_of(parsed.arguments.front()) == FileKind::results;
     const Study study = is_stored ? study_in_file(parsed) : study_run(parsed);
     return [report = BudgetReport{budgets_of(study), study.root_seed, parsed.text("of").value_or("")}](
-               const std::string& format) { return budget_in(report, format); };
+               const std::string& format) {
+        return format == "html" ? budget_html(report, made_by()) : budget_in(report, format);
+    };
 }
 
 }  // namespace credence::cli

@@ -9,13 +9,20 @@
 
 namespace credence {
 
-namespace {
-
 const BudgetPart& part_of(const ArmBudget& arm, const std::string& name) {
     return name.empty() ? arm.parts.front() : *std::ranges::find(arm.parts, name, &BudgetPart::name);
 }
 
-std::string arm_text(const ArmBudget& arm) { return arm.scenario.empty() ? "" : " of " + arm.scenario + "/" + arm.arm; }
+std::string arm_sentence(const ArmBudget& arm) {
+    std::string text = arm.at == KeptErrors::last ? "at the last step" : "on average over the steps";
+    text += ", by its sources: " + std::to_string(arm.trials) + " trials" +
+            (arm.scenario.empty() ? "" : " of " + arm.scenario + "/" + arm.arm);
+    if (arm.left_out > 0)
+        text += "; " + std::to_string(arm.left_out) + " more that failed or diverged in a run are left out";
+    return text;
+}
+
+namespace {
 
 std::string part_text(const BudgetPart& part, bool counts) {
     std::size_t width = 10;
@@ -77,11 +84,7 @@ std::string budget_text(const BudgetReport& report) {
         const BudgetPart& part = part_of(arm, report.of);
         text += (text.empty() ? "error of " : "\nerror of ") + part.name;
         if (part.unit != "1" && !part.unit.empty()) text += " [" + part.unit + "]";
-        text += arm.at == KeptErrors::last ? " at the last step" : " on average over the steps";
-        text += ", by its sources: " + std::to_string(arm.trials) + " trials" + arm_text(arm);
-        if (arm.left_out > 0)
-            text += "; " + std::to_string(arm.left_out) + " more that failed or diverged in a run are left out";
-        text += "\n" + part_text(part, arm.counted_trials > 0);
+        text += " " + arm_sentence(arm) + "\n" + part_text(part, arm.counted_trials > 0);
     }
     return text;
 }
