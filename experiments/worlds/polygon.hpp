@@ -24,10 +24,6 @@ struct Polygon : PolygonPlanner {
     static std::vector<credence::ComponentGroup> groups(const Settings&) {
         return {{"pose", 0, 6}, {"rotation", 0, 3}, {"position", 3, 3}, {"features", 6, n - 6}};
     }
-    static std::vector<std::string> arms(const Settings& s) {
-        return s.arms == Arms::all ? std::vector<std::string>{"fixed", "return", "greedy"}
-                                   : std::vector<std::string>{"fixed", "return"};
-    }
     static int innovation_rows(const Settings&) { return rows; }
     static std::vector<credence::Column> columns(const Settings&) {
         using enum credence::ColumnType;
@@ -71,6 +67,7 @@ struct Polygon : PolygonPlanner {
         enum Source { robot, walk, breath_of, sight, edge };
         const Points<double> outward = rest(true);
         const Candidates candidates = all_candidates(s);
+        Goals<Real> goals;
         Points<Real> walked = rest(false).cast<Real>(), f = walked + (breathed(0) * outward).cast<Real>();
         if (has(s, &Settings::breath)) f += sigma_breath * draws<n - 6>(s, trial, breath_of, 0).reshaped(3, features);
         Vector<Real> angles = Vector<Real>::Zero(), p = angles, unseen = angles, errors = angles;
@@ -120,7 +117,8 @@ struct Polygon : PolygonPlanner {
             // The control, the robot, and its prediction.
             const Vector<Real> believed = x.template head<3>();
             const auto before = turned(believed, has(s, &Settings::jacobian));
-            const Control<Real> control = chosen(s, trial.arm(), candidates, x, P, increment, before, k);
+            const Control<Real> control = chosen(s, trial.arm(), candidates, x, P, increment, before, goals,
+                                                 k);
             stuck += select(control.stuck, Real(1), Real(0));
             const auto noise = draws<6>(s, trial, robot, k);
             p += turned(angles, false).R * control.move + sigma_move * noise.template tail<3>();

@@ -27,7 +27,7 @@ struct PolygonModel {
         keys.choice("flaw.tails", &Settings::tails, switches, "draws beyond 2 sigma are drawn again");
         keys.choice("flaw.edges", &Settings::edges, switches, "the edges' noise is drawn once in a trial");
         keys.choice("sensor.noise", &Settings::noise, {"constant", "ranged"}, "of a sighting");
-        keys.choice("arms.which", &Settings::arms, {"all", "paths"}, "with the planner, or without");
+        keys.choice("arms.which", &Settings::arms, {"all", "paths"}, "with the planners, or without");
     }
     /// Whether the system has a flaw.
     static bool has(const Settings& s, Switch Settings::* flaw) {

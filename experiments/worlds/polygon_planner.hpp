@@ -1,6 +1,8 @@
 #pragma once
-// The controllers of the world `polygon` [docs/polygon.md]: the authors' helix, the same one turned back half way, and
-// the greedy planner, which has the candidates of one trial in its lanes, as each sees and clears other things.
+// The controllers of the world `polygon` [docs/polygon.md]: the authors' helix, the same one turned back half way, the
+// greedy planner, which has the candidates of one trial in its lanes, as each sees and clears other things, and the two
+// that go from one of the authors' goals to the next: `global` by the nearest candidate, `combined` by the cheapest of
+// the tenth of them that are nearest.
 
 #include "polygon_model.hpp"
 
@@ -8,6 +10,28 @@
 #include <utility>
 
 struct PolygonPlanner : PolygonModel {
+    enum Arm : std::size_t { fixed, back, greedy, global, combined };
+    static std::vector<std::string> arms(const Settings& s) {
+        if (s.arms == Arms::paths) return {"fixed", "return"};
+        return {"fixed", "return", "greedy", "global", "combined"};
+    }
+    /// The goals of the published runs: the start's, and two from which all features can be seen.
+    static Vector<double> goal_at(int place) {
+        constexpr double goals[][3] = {{-0.5, 0, 0}, {3.5, -1, 3}, {0.5, 2, 3}};
+        const auto& [x, y, z] = goals[place];
+        return {x, y, z};
+    }
+    /// The goals on which the trials of a pack are, which they leave once they believe to be as near as 0.3.
+    template <class Real>
+    struct Goals {
+        int place[credence::lanes<Real>]{};
+        Vector<double> of(int lane, const Vector<double>& p) {
+            int& at = place[lane];
+            if ((goal_at(at) - p).norm() <= 0.3) at = (at + 1) % 3;
+            return goal_at(at);
+        }
+    };
+
     template <class Real>
     struct Control {
         Vector<Real> turn, move;
@@ -39,7 +63,7 @@ struct PolygonPlanner : PolygonModel {
     static Vector<double> helix_move() { return {0.1, -credence::sqrt(3.0) / 4, 0.075}; }
     /// To where the noiseless helix was as long before its turning point as pose k is behind it.
     template <class Real>
-    static Control<Real> back(const State<Real>& x, const credence::EulerRotation<Real>& at, int k) {
+    static Control<Real> turned_back(const State<Real>& x, const credence::EulerRotation<Real>& at, int k) {
         constexpr int turning = 53;
         Vector<double> angles = Vector<double>::Zero(), p = angles;
         for (int i = 0; i < std::max(0, 2 * turning - k); ++i) {
@@ -50,9 +74,10 @@ struct PolygonPlanner : PolygonModel {
                 at.R.transpose() * (p - x.template segment<3>(3)), x(0) != x(0)};
     }
 
-    /// The greedy choice of one trial: x [n], P and P P [n, n] of doubles, P after all that no candidate changes.
+    /// The choice of one trial: x [n], P and P P [n, n] of doubles, P after all that no candidate changes.
     template <class Real>
-    static credence::Least<double> planned(const Settings& s, const Candidates& candidates, const State<double>& x,
+    static credence::Least<double> planned(const Settings& s, std::size_t arm, const Vector<double>& goal,
+                                           const Candidates& candidates, const State<double>& x,
                                            const Covariance<double>& P, const Covariance<double>& square,
                                            const Points<double>& increment) {
         using namespace credence;
@@ -88,6 +113,19 @@ struct PolygonPlanner : PolygonModel {
                 seen.emplace_back(bits, static_cast<int>(lane_of(index, lane)));
             }
         });
+        if (arm == global || arm == combined) {
+            const auto off = [&](const auto& one) {
+                return (at.R * candidates[one.second].template segment<3>(4) + p - goal).norm();
+            };
+            std::ranges::stable_sort(seen, {}, off);
+            if (arm == global) {
+                Least<double> nearest;
+                for (const auto& one : seen)
+                    if (off(one) <= off(seen.front()) * (1 + 1e-12)) nearest.take(true, 0, one.second);
+                return nearest;
+            }
+            seen.resize(seen.size() / 10);
+        }
         std::ranges::sort(seen);
         std::vector<unsigned> sights(static_cast<std::size_t>(candidates.count()));
         list.clear();
@@ -125,17 +163,19 @@ struct PolygonPlanner : PolygonModel {
     template <class Real>
     static Control<Real> chosen(const Settings& s, std::size_t arm, const Candidates& candidates, const State<Real>& x,
                                 const Covariance<Real>& P, const Points<double>& increment,
-                                const credence::EulerRotation<Real>& at, int k) {
-        if (arm == 1 && k > 53) return back(x, at, k);
-        if (arm < 2) return {helix_turn().cast<Real>(), helix_move().cast<Real>(), x(0) != x(0)};
+                                const credence::EulerRotation<Real>& at, Goals<Real>& goals, int k) {
+        if (arm == back && k > 53) return turned_back(x, at, k);
+        if (arm < greedy) return {helix_turn().cast<Real>(), helix_move().cast<Real>(), x(0) != x(0)};
         using namespace credence;
         const Covariance<Real> square = product_sum(P, P, Covariance<double>::Zero());
         Eigen::Matrix<Real, 6, 1> control;
         Real stuck = 0;
         for (int lane = 0; lane < lanes<Real>; ++lane) {
             const auto of_lane = [lane](const Real& number) { return lane_of(number, lane); };
-            const Least<double> best = planned<Real>(s, candidates, x.unaryExpr(of_lane), P.unaryExpr(of_lane),
-                                                     square.unaryExpr(of_lane), increment);
+            const State<double> own = x.unaryExpr(of_lane);
+            const Least<double> best =
+                planned<Real>(s, arm, goals.of(lane, own.segment<3>(3)), candidates, own, P.unaryExpr(of_lane),
+                              square.unaryExpr(of_lane), increment);
             Eigen::Matrix<double, 6, 1> taken = Eigen::Matrix<double, 6, 1>::Zero();
             if (best.found()) {
                 const Candidates::Control& one = candidates[static_cast<int>(best.index)];

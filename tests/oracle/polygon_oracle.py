@@ -6,6 +6,11 @@ candidates are computed whole. Its noise is given.
 compares it with the runs of that file, which another program made on the same noise, or with those that have one of
 these words (published, mended, constant, ranged, fixed, greedy, 101, 102), and prints the largest difference and the
 seconds of each. The exit code is 1 where one differs by 1e-9 or more.
+
+    python3 polygon_oracle.py SUCCESSOR.h5 --write OUT.h5
+
+writes what it makes of `global` and `combined` on the noise of 101, published and ranged, mended and constant, as the
+results there are.
 """
 
 import sys
@@ -25,6 +30,7 @@ MESH = np.array(TRIANGLES.split(), int).reshape(-1, 3)
 PAIRS = [(a, b) for a in range(M) for b in range(a + 1, M)]
 ANGLE, MOVE, WALK, BREATH, EDGE = 0.01, 0.02, 0.003, 0.005, 0.5
 Q = np.diag(3 * [ANGLE**2] + 3 * [MOVE**2] + (N - 6) * [WALK**2 + BREATH**2])
+GOALS = np.array([(-0.5, 0, 0), (3.5, -1, 3), (0.5, 2, 3)])
 EDGE_ROWS = np.zeros((3 * len(PAIRS), N))
 for row, (a, b) in enumerate(PAIRS):
     for axis in range(3):
@@ -149,14 +155,20 @@ def sight_rows(x, flawed):
     return delta @ R, H
 
 
-def planned(x, P, increment, flaws, ranged):
-    """The greedy planner's turn and move, or None where no candidate is left."""
+def planned(x, P, increment, flaws, ranged, arm, goal):
+    """A planner's turn and move, or None where no candidate is left."""
     turns, moves, priced, tested = candidates(flaws)
     R, features = rotation(x[:3]), x[6:].reshape(M, 3)
     allowed = (np.abs(x[1] + turns[:, 1]) <= np.pi / 6) & (np.abs(x[0] + tested) <= np.pi / 6)
     p = x[3:6] + moves @ R.T
     allowed &= (distance(p, features) > 0.3) & (distance(p, features + increment) > 0.3)
     list_of = np.flatnonzero(allowed)
+    if arm in ("global", "combined"):
+        off = np.linalg.norm(p[list_of] - goal, axis=1)
+        if arm == "global" and len(list_of):
+            nearest = list_of[np.flatnonzero(off <= off.min() * (1 + 1e-12))[-1]]
+            return turns[nearest], moves[nearest]
+        list_of = np.sort(list_of[np.argsort(off, kind="stable")][:len(off) // 10])
     if not len(list_of):
         return None
     after, P_all = predicted(x, P, turns[list_of], priced[list_of], increment, flaws["jacobian"])
@@ -187,12 +199,15 @@ def run(noise, flaws, ranged, arm):
     P = np.diag(np.concatenate([np.zeros(6), np.repeat(sigma**2, 3)]))
     names = ["trace", "unseen", "position", "rotation", "features", "nees", "nees_pose", "nees_features", "control"]
     result = {name: [] for name in names}
+    goal = 0
     for k in range(1, len(noise["odom"])):
         increment = (amount(k + 1) - amount(k)) * OUTWARD
         if arm == "fixed":
             control = np.array([0, 0, np.pi / 12]), np.array([0.1, -np.sqrt(3) / 4, 0.075])
         else:
-            control = planned(x, P, increment, flaws, ranged) or (np.zeros(3), np.zeros(3))
+            if np.linalg.norm(GOALS[goal] - x[3:6]) <= 0.3:
+                goal = (goal + 1) % len(GOALS)
+            control = planned(x, P, increment, flaws, ranged, arm, GOALS[goal]) or (np.zeros(3), np.zeros(3))
         turn, move = control
         p = p + rotation(angles) @ move + MOVE * noise["odom"][k, 3:]  # along the axes before the turn
         angles = wrapped(angles + turn + ANGLE * noise["odom"][k, :3])
@@ -263,5 +278,19 @@ def main(path, *words):
     return worst < 1e-9
 
 
+def write(path, to):
+    with h5py.File(path) as file, h5py.File(to, "w") as out:
+        for variant, tails in (("published", "truncated"), ("mended", "normal")):
+            flaws = dict.fromkeys(FLAWS, variant == "published")
+            draws = {name: drawn[()] for name, drawn in file["noise"][tails]["101"].items()}
+            noise = "ranged" if variant == "published" else "constant"
+            for arm in ("global", "combined"):
+                for name, values in run(draws, flaws, noise == "ranged", arm).items():
+                    out[f"results/{variant}/{noise}/{arm}/101/{name}"] = values
+
+
 if __name__ == "__main__":
-    sys.exit(not main(*sys.argv[1:]))
+    if sys.argv[2:3] == ["--write"]:
+        write(sys.argv[1], sys.argv[3])
+    else:
+        sys.exit(not main(*sys.argv[1:]))
