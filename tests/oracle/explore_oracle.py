@@ -68,7 +68,7 @@ class Settings:
                            for turn in map(float, self.get("planner.turns").split(","))
                            for i in range(-speeds, speeds + 1)]
         self.reach = max(np.linalg.norm(move) for _, move in self.candidates)
-        self.worth = real("planner.coverage")
+        self.worth, self.horizon = real("planner.coverage"), int(self.get("planner.horizon"))
         low, high = points(self.get("map.box"))
         self.cell = real("map.cell")
         self.columns, self.rows = (math.ceil(side / self.cell - 1e-9) for side in high - low)
@@ -346,11 +346,15 @@ class Filter:
         return (weights * np.diag(P) * part.get(s.criterion, True)).sum()
 
     def costs(self, viewed, informed):
-        """The candidates' costs, None where a wall forbids one."""
-        s, costs = self.s, []
         x = self.x.copy()
         if informed:
             x = np.concatenate([[self.world.theta], self.world.r, self.world.f.ravel()])
+        return self.costs_from(x, self.P, viewed, 1)
+
+    def costs_from(self, x, before, viewed, steps):
+        """The candidates' costs, None where a wall forbids one; over several steps the least sum with each as the
+        first, None where a wall ends every sequence."""
+        s, costs = self.s, []
         for turn, move in s.candidates:
             moved = R(x[0]) @ move
             if free(s.walls, s.radius, x[1:3], moved) < 1:
@@ -358,7 +362,7 @@ class Filter:
                 continue
             F = np.eye(self.n)
             F[1:3, 0] = J @ moved
-            P = F @ self.P @ F.T
+            P = F @ before @ F.T
             P[:3, :3] += s.Q
             y = np.concatenate([[x[0] + turn], x[1:3] + moved, x[3:]])
             for j in sorted(self.there):
@@ -370,8 +374,13 @@ class Filter:
                 S = H @ P @ H.T + (s.believed * s.sigma(np.linalg.norm(d))) ** 2 * np.eye(2)
                 K = np.linalg.solve(S, H @ P).T
                 P = P - K @ S @ K.T
-            cells = len(new_cells(s, y[1:3], y[0], viewed)) if s.worth else 0
-            costs.append(self.cost(P) - s.worth * cells)
+            cells = new_cells(s, y[1:3], y[0], viewed) if s.worth else []
+            costs.append(self.cost(P) - s.worth * len(cells))
+            if steps > 1:
+                then = viewed.copy()
+                then[cells] = True
+                rest = [cost for cost in self.costs_from(y, P, then, steps - 1) if cost is not None]
+                costs[-1] = costs[-1] + min(rest) if rest else None
         return costs
 
 
@@ -458,7 +467,9 @@ def trial(s, seed, number, controller, estimator, tables):
         elif controller == "frontier":
             turn, move = frontier(s, belief.x, viewed, tables["ways"])
         else:
-            costs = belief.costs(viewed, controller == "informed")
+            ahead = min(s.horizon, s.K - k)
+            costs = (belief.costs_from(belief.x, belief.P, viewed, ahead) if controller == "horizon" else
+                     belief.costs(viewed, controller == "informed"))
             all_costs.append(costs)
             best, turn, move = math.inf, 0.0, np.zeros(2)
             logarithm = s.worth > 0 or s.criterion.endswith("log_det")
@@ -517,7 +528,7 @@ def random_scenario(rng):
                                            "max_eigenvalue"),
                          "heading_weight": pick(1, 3), "speeds": pick(1, 2), "turns": pick("0", "-0.8, 0, 0.9"),
                          "coverage": pick(0, 0, 0.1)},
-             "arms": {"controllers": "fixed, random, frontier, greedy, informed",
+             "arms": {"controllers": pick("fixed, random, frontier, greedy, informed", "horizon, greedy"),
                       "estimators": ", ".join(rng.choice(["ekf", "riekf", "fej", "iekf", "ideal"], 2, False))}}
     if placement == "given":
         lines["features"]["positions"] = ", ".join(

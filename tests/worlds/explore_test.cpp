@@ -42,7 +42,8 @@ ExploreSettings rooms() {
     s.box = {{-4, -4}, {4, 4}};
     s.coverage = 0.05;
     s.features.step = 1;
-    s.explorers = {Explorer::fixed, Explorer::random, Explorer::frontier, Explorer::greedy, Explorer::informed};
+    s.explorers = {Explorer::fixed,  Explorer::random,  Explorer::frontier,
+                   Explorer::greedy, Explorer::horizon, Explorer::informed};
     s.arms.estimators = std::vector{Estimator::ekf, Estimator::fej, Estimator::riekf};
     return resolved(s);
 }
@@ -136,8 +137,9 @@ TEST_CASE("explore: a block is its trials one by one, on every target") {
     const ExploreView& view = problem.view();
     CHECK(find_world("explore")->all_series(scenario).size() == static_cast<std::size_t>(view.series_count));
     const auto cells = static_cast<std::size_t>(view.grid.count());
-    const auto viewed = std::make_unique<bool[]>(cells);
+    const auto viewed = std::make_unique<bool[]>(2 * cells);
     std::vector<int> queue(cells), from(cells);
+    std::vector<Belief<double, ExploreLayout::capacity>> ahead(2);
     constexpr int trials = 11;
     for (const Target& target : runnable_targets()) {
         CAPTURE(target.name);
@@ -149,6 +151,7 @@ TEST_CASE("explore: a block is its trials one by one, on every target") {
                 using Estimating = typename decltype(tag)::template type<ExploreLayout, double>;
                 const auto work = std::make_unique<ExploreWorkspace<double, Estimating>>();
                 work->viewed = viewed.get(), work->queue = queue.data(), work->from = from.data();
+                work->ahead = ahead.data();
                 Unobserved nothing;
                 for (int trial = 0; trial < trials; ++trial) {
                     double own[explore_column_count];
@@ -268,9 +271,11 @@ TEST_CASE("explore: the control chosen is the least of the costs, at hard parame
     int planned = 0;
     for (const double heading : {1e-3, 0.05, 0.3})
         for (const double sigma : {1e-4, 0.1, 10.0})
-            for (const double coverage : {0.0, 0.01}) {
-                CAPTURE(heading, sigma, coverage);
+            for (const auto& [coverage, criterion] : {std::pair{0.0, Criterion::trace}, {0.01, Criterion::trace},
+                                                      {0.0, Criterion::log_det}, {0.5, Criterion::log_det}}) {
+                CAPTURE(heading, sigma, coverage, static_cast<int>(criterion));
                 ExploreSettings settings = rooms();
+                settings.planner.criterion = criterion;
                 settings.noise.heading = heading;
                 settings.sensor.sigma = sigma;
                 settings.coverage = coverage;
@@ -284,7 +289,7 @@ TEST_CASE("explore: the control chosen is the least of the costs, at hard parame
                 Watcher watcher{{}, view};
                 double columns[explore_column_count];
                 std::vector<double> figures(static_cast<std::size_t>(view.series_count * (view.poses - 1)));
-                for (std::uint64_t trial = 0; trial < 100; ++trial)
+                for (std::uint64_t trial = 0; trial < 50; ++trial)
                     run_trial(view, Explorer::greedy, KeyedDraws<double>(3, trial, infinity), watcher, *work, columns,
                               figures.data());
                 planned += watcher.planned;

@@ -18,8 +18,8 @@ const std::vector<std::string>& shared_keys() {
         "noise.odometry", "noise.initial_heading", "noise.initial_position", "noise.measurement_tails",
         "noise.degrees_of_freedom", "noise.outlier_share", "noise.outlier_scale", "noise.truncate", "filter.heading",
         "filter.odometry", "filter.measurement", "filter.covariance", "filter.gate", "control.waypoints",
-        "planner.criterion", "planner.heading_weight", "planner.speeds", "planner.turns", "arms.estimators",
-        "arms.planners"};
+        "planner.criterion", "planner.horizon", "planner.heading_weight", "planner.speeds", "planner.turns",
+        "arms.estimators", "arms.planners"};
     return names;
 }
 
@@ -162,7 +162,7 @@ ExploreSettings::ExploreSettings() {
 }
 
 const std::vector<std::string>& explorer_names() {
-    static const std::vector<std::string> names{"fixed", "random", "frontier", "greedy", "informed"};
+    static const std::vector<std::string> names{"fixed", "random", "frontier", "greedy", "horizon", "informed"};
     return names;
 }
 
@@ -182,7 +182,7 @@ ExploreSettings resolved(const ExploreSettings& settings) {
     check_grid(settings);
     DeformableSettings shared = settings;
     if (shared.features.placement != Placement::given && !shared.features.count) shared.features.count = default_count;
-    shared.arms.controllers = {Controller::fixed};
+    shared.arms.controllers = {has(settings, Explorer::horizon) ? Controller::horizon : Controller::fixed};
     shared.waypoints.clear();
     validate(shared);
     ExploreSettings resolved = settings;

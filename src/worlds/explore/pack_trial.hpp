@@ -18,6 +18,7 @@ struct ExploreTrial : WatchedTrial<ExploreView, ExploreLayout, Number, ExploreWo
     using Room = typename WatchedTrial<ExploreView, ExploreLayout, Number, ExploreWorkspaceOf<Number, Tag>>::Room;
     using Steps = ExploreSteps<Real, typename Tag::template type<ExploreLayout, Real>, KeyedDraws<Real>,
                                Detail<ExploreLayout, Real>>;
+    using Ahead = Belief<Real, ExploreLayout::capacity>;
     static constexpr bool consults = true;
     Explorer controller;
     Chosen<Real> chosen;
@@ -27,13 +28,16 @@ struct ExploreTrial : WatchedTrial<ExploreView, ExploreLayout, Number, ExploreWo
     static int column_count(const ExploreView&) { return explore_column_count; }
     static std::size_t padded(std::size_t bytes) { return (bytes + 63) / 64 * 64; }
     static std::size_t viewed_size(const ExploreView& problem) {
-        return padded(static_cast<std::size_t>(problem.grid.count()) * sizeof(Mask<Real>));
+        return padded(static_cast<std::size_t>(problem.grid.count() * problem.control.horizon) * sizeof(Mask<Real>));
     }
     static std::size_t cells_size(const ExploreView& problem) {
         return padded(static_cast<std::size_t>(problem.grid.count()) * sizeof(int));
     }
+    static std::size_t ahead_size(const ExploreView& problem) {
+        return problem.control.horizon > 1 ? static_cast<std::size_t>(problem.control.horizon) * sizeof(Ahead) : 0;
+    }
     static std::size_t room(const ExploreView& problem) {
-        return padded(sizeof(Room)) + viewed_size(problem) + 2 * cells_size(problem);
+        return padded(sizeof(Room)) + viewed_size(problem) + 2 * cells_size(problem) + ahead_size(problem);
     }
     static Room& enter(const ExploreView& problem, void* room, PackDetails<Real>& details) {
         Room& entered = *static_cast<Room*>(room);
@@ -41,6 +45,7 @@ struct ExploreTrial : WatchedTrial<ExploreView, ExploreLayout, Number, ExploreWo
         entered.work.viewed = reinterpret_cast<Mask<Real>*>(behind);
         entered.work.queue = reinterpret_cast<int*>(behind + viewed_size(problem));
         entered.work.from = reinterpret_cast<int*>(behind + viewed_size(problem) + cells_size(problem));
+        entered.work.ahead = reinterpret_cast<Ahead*>(behind + viewed_size(problem) + 2 * cells_size(problem));
         entered.detail.watch(problem, details);
         return entered;
     }
@@ -67,7 +72,8 @@ struct ExploreTrial : WatchedTrial<ExploreView, ExploreLayout, Number, ExploreWo
     }
     template <class Price>
     static void ahead(const ExploreView& problem, Steps& steps, int, const Price& price) {
-        each_candidate_ahead<Real>(problem, steps.work(), price);
+        each_candidate_ahead<Real>(problem, steps.work().planner.still.mean, steps.work(), [](int, Mask<Real>) {},
+                                   price);
     }
 };
 

@@ -73,12 +73,15 @@ template <class Estimating>
 class SingleTrials {
 public:
     explicit SingleTrials(const ExploreView& view)
-        : view_(view), viewed_(std::make_unique<bool[]>(static_cast<std::size_t>(view.grid.count()))),
+        : view_(view),
+          viewed_(std::make_unique<bool[]>(static_cast<std::size_t>(view.grid.count() * view.control.horizon))),
           queue_(static_cast<std::size_t>(view.grid.count())), from_(queue_.size()),
+          ahead_(static_cast<std::size_t>(view.control.horizon)),
           all_series_(static_cast<std::size_t>(view.series_count) * static_cast<std::size_t>(view.poses - 1)) {
         work_->viewed = viewed_.get();
         work_->queue = queue_.data();
         work_->from = from_.data();
+        work_->ahead = ahead_.data();
     }
     Estimating& estimator() { return work_->estimator; }
     template <class Observer>
@@ -94,6 +97,7 @@ private:
     const ExploreView& view_;
     std::unique_ptr<bool[]> viewed_;
     std::vector<int> queue_, from_;
+    std::vector<Belief<double, ExploreLayout::capacity>> ahead_;
     std::vector<double> all_series_;
     std::unique_ptr<ExploreWorkspace<double, Estimating>> work_ =
         std::make_unique<ExploreWorkspace<double, Estimating>>();
@@ -117,13 +121,14 @@ Trajectory ExploreSimulation::replay(const Scenario& scenario, std::size_t arm, 
     trajectory.source = source_text(root_seed, trial);
     const SlamVariables variables =
         add_slam_variables(trajectory, settings, {}, "to this pose, as given to the filter");
-    const bool plans = arms_[arm].controller == Explorer::greedy || arms_[arm].controller == Explorer::informed;
-    ExploreRecorder recorder(view, variables, add_explore_variables(trajectory, settings, view.grid, plans),
-                             trajectory);
+    const ExploreVariables own =
+        add_explore_variables(trajectory, settings, view.grid, plans(arms_[arm].controller));
+    ExploreRecorder recorder(view, variables, own, trajectory);
     with_estimator<Process::heading>(arms_[arm].estimator, [&](auto estimator) {
         using Estimating = typename decltype(estimator)::template type<ExploreLayout, double>;
-        SingleTrials<Estimating>(view).run(arms_[arm].controller, commands(view, arms_[arm], estimator, root_seed, trial),
-                                           root_seed, trial, recorder, trajectory.column_values.data());
+        SingleTrials<Estimating>(view).run(arms_[arm].controller,
+                                           commands(view, arms_[arm], estimator, root_seed, trial), root_seed, trial,
+                                           recorder, trajectory.column_values.data());
     });
     fill_failed(trajectory.columns, trajectory.column_values.data());
     return trajectory;

@@ -26,7 +26,7 @@ enum class MotionNoise { motion, report };
 
 /// frontier: towards the nearest cell that was not in view; informed: greedy, on the true state. In the order of
 /// explorer_names.
-enum class Explorer { fixed, random, frontier, greedy, informed };
+enum class Explorer { fixed, random, frontier, greedy, horizon, informed };
 
 struct ExploreSettings : DeformableSettings {
     std::vector<WallSegment> walls;
@@ -45,6 +45,9 @@ struct ExploreSettings : DeformableSettings {
 
 inline constexpr std::size_t largest_wall_count = 256;
 inline constexpr int largest_cell_count = 1 << 16;
+
+/// Whether a controller weighs the planner's candidates.
+constexpr bool plans(Explorer explorer) { return explorer >= Explorer::greedy; }
 
 /// An arm: a controller and an estimator.
 struct ExploreArm {

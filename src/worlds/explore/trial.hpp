@@ -3,7 +3,8 @@
 // shares with it layout, belief, estimators, update, evaluation and observers.
 
 #include "slam/trial/workspace.hpp"
-#include "worlds/explore/planner.hpp"
+#include "worlds/explore/frontier.hpp"
+#include "worlds/explore/horizon.hpp"
 
 namespace credence {
 inline namespace CREDENCE_TARGET {
@@ -182,12 +183,13 @@ public:
             case Explorer::random:
                 return fetch_each(problem_.control, noise_.uniform(Source::control, k, 0) *
                                                         Real(problem_.control.candidate_count));
+            case Explorer::horizon:
+                return plan_among_walls(problem_, work_.belief, work_.truth, layout_, k, work_, priced(k));
             case Explorer::greedy:
             case Explorer::informed: {
                 ExplorePlanner planner(problem_, controller == Explorer::informed, work_.belief, work_.truth, layout_,
                                        k, work_);
-                return planner.choose(
-                    [&](int i, double cost, bool allowed) { observer_.priced(k, i, cost, allowed); });
+                return planner.choose(priced(k));
             }
             default: return command_from<Real>(problem_.control.waypoints[k - 1]);
         }
@@ -227,6 +229,9 @@ public:
     void finish(Real* columns) { write_columns(problem_, sums_, own_, outcome_, columns); }
 
 private:
+    auto priced(int k) {
+        return [this, k](int i, double cost, bool allowed) { observer_.priced(k, i, cost, allowed); };
+    }
     void draw(int k) {
         draws_.draw(noise_, k);
         shape_tails(problem_.sensor, layout_.features(), k, noise_,
