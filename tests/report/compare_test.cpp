@@ -7,6 +7,7 @@
 #include "oracle/oracle.hpp"
 #include "store_study.hpp"
 #include "study_support.hpp"
+#include "worlds/explore/explore.hpp"
 
 namespace credence::test::compare_test {
 
@@ -242,6 +243,45 @@ TEST_CASE("compare: failures are concluded on before means, few pairs by their s
                    Contains("; the median has the other sign: 1 of 300 trials carry the mean (7)"));
     CHECK_THAT(said(0, 300, [](std::size_t i) { return i % 4 == 0 ? -9 - 0.01 * static_cast<double>(i) : 1.0; }),
                StartsWith("lower, lower; ") && Contains(" carry the mean (296, 292, 288, 284, 280, ...)"));
+}
+
+TEST_CASE("compare: in explore two paths differ in trace(P), pose error and coverage, at one shared level") {
+    ExploreSettings settings;
+    settings.poses = 9;
+    settings.explorers = {Explorer::frontier, Explorer::greedy};
+    Study study = new_study({scenario_of(resolved(settings))}, 4);
+    run_study(study, {120, 1, {}});
+    const CompareReport report = compared({{"explore.h5", study}}, "greedy,frontier");
+    const ComparedPair& pair = report.pairs.at(0);
+    REQUIRE(pair.further.size() == 2);
+    CHECK(pair.comparison.columns[0].name == "trace_P");
+    CHECK(pair.comparison.columns[pair.further[0].first].name == "pose_error");
+    CHECK(pair.comparison.columns[pair.further[1].first].name == "coverage");
+    // 4 % are shared by three conclusions: half of 1 - 0.04/3 on either side of Student's law with 119 degrees.
+    const double quantile = 2.5123;  // scipy.stats.t.ppf(1 - 0.02 / 3, 119)
+    const auto expected = [&](std::size_t c) {
+        const Summary& difference = pair.comparison.columns[c].paired.difference;
+        const double half = quantile * difference.standard_error;
+        return difference.mean + half < 0   ? Conclusion::lower
+               : difference.mean - half > 0 ? Conclusion::higher
+                                            : Conclusion::not_shown;
+    };
+    CHECK(pair.conclusion == expected(0));
+    for (const auto& [column, conclusion] : pair.further) CHECK(conclusion == expected(column));
+    CHECK(pair.further[1].second == Conclusion::lower);  // greedy stays where its trace is small
+    const Json json = Json::parse(compare_json(report))[0];
+    CHECK(json["conclusions"]["coverage"] == "lower");
+    // A difference that is certain by itself is not where it shares the level.
+    Study made = study;
+    auto& arms = made.scenarios[0].arms;
+    const std::size_t coverage = pair.further[1].first;
+    for (std::size_t i = 0; i < 120; ++i) {
+        auto &greedy = arms[1].columns.in_memory()[coverage], &frontier = arms[0].columns.in_memory()[coverage];
+        greedy[i] = frontier[i] + (i % 2 == 0 ? 1 : -1) + 0.21;  // 2.3 standard errors
+    }
+    const ComparedPair again = compared({{"made-up.h5", made}}, "greedy,frontier").pairs.at(0);
+    CHECK(again.comparison.columns[coverage].paired.difference.ci95.low > 0);
+    CHECK(again.further[1].second == Conclusion::not_shown);
 }
 
 TEST_CASE("compare: what is not shown is said so, and ranks against the mean are not hidden") {
