@@ -7,6 +7,7 @@
 //   z_k = p_k + sigma w_k,     every `seen` steps on average
 // Kalman filter: [Bar-Shalom, Li, Kirubarajan 2001, 5.2, 6.3.2]
 
+#include <credence/filters.hpp>
 #include <credence/own_world.hpp>
 
 struct Tracker {
@@ -58,6 +59,9 @@ struct Tracker {
         x << 50 * trial.normal(initial_position, 0), 5 * trial.normal(initial_velocity, 0);
         State estimate = State::Zero();
         Eigen::Matrix<Real, 4, 4> P = State(2500, 2500, 25, 25).asDiagonal();
+        credence::CountedCovariance<Real, 4, 5> counted;  // for `credence budget`
+        counted.parts[initial_position].diagonal() << 2500, 2500, 0, 0;
+        counted.parts[initial_velocity].diagonal() << 0, 0, 25, 25;
         Real measurements = 0;
         for (int k = 1; k < trial.poses(); ++k) {
             x = model.F * x + model.G * (s.acceleration * trial.normal(acceleration, k));
@@ -72,6 +76,12 @@ struct Tracker {
             const Eigen::Matrix<Real, 4, 2> K = credence::select(seen, P.template leftCols<2>() * S.inverse(), 0);
             estimate += K * innovation;
             P -= K * S * K.transpose();
+            if (trial.counting()) {
+                counted.predict(model.F);
+                counted.parts[acceleration] += believed * model.Q;
+                counted.update(K, Eigen::Matrix<double, 2, 4>::Identity(), model.R, measurement);
+                for (int source = 0; source < 5; ++source) trial.counts(source, counted.parts[source]);
+            }
             trial.step(estimate - x, P, innovation, S, seen);
             measurements += credence::select(seen, Real(1), Real(0));
         }

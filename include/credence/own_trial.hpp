@@ -68,6 +68,11 @@ public:
 
     /// The value of the world's own column of that place, 0 where it is not set.
     virtual void set(std::size_t column, double value) = 0;
+
+    /// Whether it is asked what P counts for each source, as `credence budget` does of some trials.
+    virtual bool counting() const { return false; }
+    /// That it counts P_s [n, n] for this source at the step that is said next; over the sources P_s adds up to P.
+    virtual void counts(int, const Matrix&) {}
 };
 
 inline namespace CREDENCE_TARGET {
@@ -130,6 +135,14 @@ public:
         else step(error, P);
     }
 
+    bool counting() const { return pack_.counted != nullptr; }
+    template <class Covariance>
+    void counts(int source, const Eigen::MatrixBase<Covariance>& P_s) {
+        if (!counting()) return;
+        if (P_s.rows() != pack_.state_size) refuse(pack_, "a P_s of another size than the state");
+        pack_.count(pack_, source, numbers(as_reals(P_s.diagonal())), lanes<Real>);
+    }
+
     void set(std::size_t column, const Real& value) {
         if (column >= pack_.own_column_count) refuse(pack_, "a column that it does not have is set");
         store(value, pack_.own_columns + column * static_cast<std::size_t>(lanes<Real>));
@@ -183,6 +196,8 @@ public:
             trial_.step(error, P);
     }
     void set(std::size_t column, double value) { trial_.set(column, value); }
+    bool counting() const { return trial_.counting(); }
+    void counts(int source, const OwnTrial::Matrix& P_s) { trial_.counts(source, P_s); }
 
 private:
     OwnTrial& trial_;

@@ -30,7 +30,7 @@
 //   static void W::validate(const Settings&)                      throws InputError where settings contradict each
 //   other
 //   static constexpr const char* W::sources[]                     the names of the sources 0, 1 ... (up to 15) that its
-//   trials draw from, for `credence budget`
+//   trials draw from, for `credence budget`; what of P they count, run may say by trial.counts [CountedCovariance]
 //
 // run is called from several threads at once and must not keep anything from call to call, read clocks or files, or
 // draw from anywhere else: a block of trials is a pure function of scenario, root seed and index. Trial 0 runs twice
@@ -131,6 +131,7 @@ public:
     std::unique_ptr<const Simulation> simulation(const Settings& settings, const Scenario& scenario) const {
         OwnReport report = report_of(settings.own);
         report.budget = settings.budget;
+        for (DrawSource& source : sources()) report.sources.push_back(std::move(source.name));
         if constexpr (RunsInLanes<W>) {
 #ifndef CREDENCE_TARGET_OBJECT
             if (auto in_lanes = lane_simulation(scenario, report, linked_lanes<W>(),

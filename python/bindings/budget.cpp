@@ -19,7 +19,8 @@ using Errors = nb::ndarray<const double, nb::ndim<3>, nb::c_contig, nb::device::
 Said budget(const std::vector<Errors>& runs, const std::vector<std::string>& sources,
             const std::vector<std::pair<std::string, std::string>>& components,
             const std::vector<std::pair<std::string, std::vector<int>>>& groups, const std::vector<double>& variance,
-            std::int64_t left_out, std::uint64_t seed, const std::string& at, const std::string& of) {
+            std::int64_t left_out, std::uint64_t seed, const std::string& at, const std::string& of,
+            const std::vector<std::pair<std::string, std::vector<double>>>& counted) {
     BudgetErrors errors;
     errors.sources = sources;
     errors.trials = runs.front().shape(0);
@@ -34,10 +35,15 @@ Said budget(const std::vector<Errors>& runs, const std::vector<std::string>& sou
             values[i] = runs[run].data()[i * errors.components.size() + component];
         return values;
     };
+    for (const auto& [source, variances] : counted) {
+        errors.counted.push_back(source);
+        errors.counted_variance.push_back(variances);
+    }
     if (!of.empty()) check_part(errors.components, errors.groups, of);
     return alone([&] {
-        ArmBudget arm{"", "run", at == "mean" ? KeptErrors::mean : KeptErrors::last,
-                      static_cast<std::int64_t>(errors.trials), left_out, 0, sources, budget_parts(errors)};
+        const auto trials = static_cast<std::int64_t>(errors.trials);
+        ArmBudget arm{"", "run", at == "mean" ? KeptErrors::mean : KeptErrors::last, trials, left_out,
+                      counted.empty() ? 0 : trials, sources, budget_parts(errors)};
         return Said{[report = BudgetReport{{std::move(arm)}, seed, of}](const std::string& format) {
             return budget_in(report, format);
         }};
@@ -48,7 +54,8 @@ Said budget(const std::vector<Errors>& runs, const std::vector<std::string>& sou
 
 void bind_budget(nb::module_& module) {
     module.def("budget", budget, nb::arg("errors"), nb::arg("sources"), nb::arg("components"), nb::arg("groups"),
-               nb::arg("variance"), nb::arg("left_out"), nb::arg("seed"), nb::arg("at"), nb::arg("of"));
+               nb::arg("variance"), nb::arg("left_out"), nb::arg("seed"), nb::arg("at"), nb::arg("of"),
+               nb::arg("counted"));
 }
 
 }  // namespace credence::python

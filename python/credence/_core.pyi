@@ -49,6 +49,7 @@ def budget(
     seed: int,
     at: str,
     of: str,
+    counted: Sequence[tuple[str, Sequence[float]]],
 ) -> Said: ...
 def command(
     name: str,

@@ -7,6 +7,7 @@ from collections.abc import Collection
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 _NAMED, _NAMED_OTHER, _OTHER = 2**32 - 1, 2**32 - 2, 2**32 - 3  # no child of `spawn` has such a number
 REST = "rest"  #: the source of what is drawn from the generator itself
@@ -24,6 +25,8 @@ class Streams(np.random.Generator):
     ----------
     streams : dict of Generator
         Those that were used, by name and numbers.
+    counted : dict of array
+        What `counts` was told, by source.
     """
 
     def __init__(self, sequence: np.random.SeedSequence, other: Collection[str] = ()) -> None:
@@ -31,6 +34,7 @@ class Streams(np.random.Generator):
         self._own = self._derived(_OTHER) if REST in self._other else sequence
         super().__init__(np.random.Philox(self._own))
         self.streams: dict[tuple[str | int, ...], np.random.Generator] = {}
+        self.counted: dict[str, npt.NDArray[np.float64]] = {}
 
     def _derived(self, *key: int) -> np.random.SeedSequence:
         return np.random.SeedSequence(self._sequence.entropy, spawn_key=(*self._sequence.spawn_key, *key))
@@ -47,6 +51,12 @@ class Streams(np.random.Generator):
             derived = self._derived(world, *words, *map(int, numbers))
             self.streams[parts] = np.random.Generator(np.random.Philox(derived))
         return self.streams[parts]
+
+    def counts(self, source: str, covariance: npt.ArrayLike) -> None:
+        """Say what of P the filter counts for a source, [step, n, n]: propagated for the noise of that source alone,
+        with the filter's own gains. `credence.budget` shows it; for all sources together it is P.
+        """
+        self.counted[source] = np.asarray(covariance, dtype=float)
 
     def spawn(self, n_children: int) -> list[np.random.Generator]:
         return [np.random.Generator(np.random.Philox(one)) for one in self._own.spawn(n_children)]

@@ -38,16 +38,17 @@ __all__ = ["Budget", "Contribution", "budget"]
 
 AT = ("last", "mean")
 LOOKED_AT = 20  # trials whose sources are the sources
+LARGEST_REST = 1e-6  # what the sources count may differ from P, relative to the standard deviations
 
 
 class _Worlds:
     """A function of a generator, called with some of its sources drawn anew."""
 
-    def __init__(self, run: Callable[..., Any], sources: Sequence[str]) -> None:
-        self.run, self.sources = run, tuple(sources)
+    def __init__(self, run: Callable[..., Any], sources: Sequence[str], counted: Sequence[str], at: str) -> None:
+        self.run, self.sources, self.counted, self.at = run, tuple(sources), tuple(counted), at
 
     def __call__(self, rng: Streams, other: Sequence[str]) -> Run:
-        """The run, with how often each source was drawn by its name alone as a column."""
+        """The run, with how often each source was drawn by its name alone as a column, and what of P each counts."""
         streams = rng.other(other)
         result = self.run(streams)
         if not isinstance(result, Run):
@@ -57,7 +58,30 @@ class _Worlds:
             why = f"draws from {printable(unknown[0])}, which none of the first {LOOKED_AT} trials does"
             raise InputError(f"the function {why}. Draw every source in every run.")
         counts = {f"draws_{i}": drawn.get(name, {}).get((), 0) for i, name in enumerate(self.sources)}
+        if not other:
+            counts |= self._counted(streams.counted, np.asarray(result.given().get("covariance", ())))
         return Run(**{**result.given(), "columns": {**(result.columns or {}), **counts}})
+
+    def _counted(self, counted: Mapping[str, Array], P: Array) -> dict[str, float]:
+        """The variances that are counted for each source, [source, n] as columns; P [step, n, n]."""
+        if counted.keys() != set(self.counted):
+            now, before = (printable(", ".join(names) or "no source") for names in (counted, self.counted))
+            raise InputError(f"the function counts {now}, and in other trials {before}. Call rng.counts for the same "
+                             "sources in every run.")  # fmt: skip
+        if not counted:
+            return {}
+        shapes = {P.shape} | {one.shape for one in counted.values()}
+        if len(shapes) > 1 or P.ndim != 3:
+            raise InputError(f"rng.counts: the shapes {', '.join(map(str, shapes))} are not all that of covariance, "
+                             "[step, n, n]. Give the whole of each P_s at every step.")  # fmt: skip
+        sigma = np.sqrt(np.diagonal(P, axis1=1, axis2=2))
+        rest = np.nanmax(np.abs(sum(counted.values()) - P) / (sigma[:, :, None] * sigma[:, None, :]))
+        if not rest <= LARGEST_REST:
+            raise InputError(f"rng.counts: what all sources count differs from covariance by {rest:.2g} of it. "
+                             "Propagate each by (I - K H) P_s (I - K H)' + K R_s K', K the filter's own.")  # fmt: skip
+        steps = slice(-1, None) if self.at == "last" else slice(None)
+        variances = [np.diagonal(counted[name][steps], axis1=1, axis2=2).mean(axis=0) for name in self.counted]
+        return {f"counts_{i}_{j}": value for i, own in enumerate(variances) for j, value in enumerate(own)}
 
 
 @dataclass(frozen=True)
@@ -76,7 +100,7 @@ class Contribution:
     with_others : float
         Root of the total part T, with all interactions.
     p_counts : float
-        Root of the variance that P counts for the source, of a scenario of our worlds; else NaN.
+        Root of the variance that P counts for the source; NaN where it is not known.
     ratio : float
         V over that variance; NaN where P counts none.
     """
@@ -138,7 +162,7 @@ class Part:
 class _Errors:
     """Signed errors [trial, step, component] of each of the runs at the steps that are asked about, and A's P."""
 
-    def __init__(self, simulation: Simulation, sources: Sequence[str], at: str) -> None:
+    def __init__(self, simulation: Simulation, sources: Sequence[str], counted_sources: Sequence[str], at: str) -> None:
         self.sources = sources
         arms = [simulation[name] for name in simulation.arms]
         counted = np.all([arm["status"] == 0 for arm in arms], axis=0)  # with a result, and not diverged
@@ -163,6 +187,8 @@ class _Errors:
             variance = self._taken(self._variances(covariance, count))
             own = variance if len(variance) == 1 else variance[counted[: len(variance)]]
             self.variance = own.mean(axis=(0, 1)).tolist()
+        self.counted = [(name, [float(arms[0][f"counts_{i}_{j}"][counted].mean()) for j in range(count)])
+                        for i, name in enumerate(counted_sources)]  # fmt: skip
 
     @staticmethod
     def _error(arm: SimulatedArm) -> Array:
@@ -191,7 +217,7 @@ class _Errors:
 def estimated(
     errors: Sequence[Array], sources: Sequence[str], components: Sequence[tuple[str, str]],
     groups: Mapping[str, Sequence[int]] | None = None, variance: Sequence[float] = (), left_out: int = 0,
-    seed: int = 1, at: str = "last", of: str | None = None,
+    seed: int = 1, at: str = "last", of: str | None = None, counted: Sequence[tuple[str, Sequence[float]]] = (),
 ) -> _core.Said:  # fmt: skip
     """What the program says of the errors [trial, step, n] of the runs A, B, C_0, D_0 and so on.
 
@@ -209,10 +235,12 @@ def estimated(
         Trials that are not there.
     seed, at, of
         As of `budget`.
+    counted : list of tuple
+        A source, and the mean of what each variance in P counts for it, [n].
     """
     arrays = [np.ascontiguousarray(one, dtype=float) for one in errors]
     return _core.budget(arrays, list(sources), list(components), list((groups or {}).items()), list(variance),
-                        left_out, seed, at, of or "")  # fmt: skip
+                        left_out, seed, at, of or "", list(counted))  # fmt: skip
 
 
 class Budget:
@@ -308,32 +336,37 @@ def _at(name: str, value: Any) -> str:
     return str(value)
 
 
-def _sources_of(run: Callable[..., Any], seed: int, trials: int) -> list[str]:
-    """The names that the first trials draw from, in the order of their first use; one that fails may draw less."""
+def _sources_of(run: Callable[..., Any], seed: int, trials: int) -> tuple[list[str], list[str]]:
+    """The names that the first trials draw from, and those that they count, in the order of their first use; one that
+    fails may draw less."""
     found: dict[str, None] = {}
+    counted: dict[str, None] = {}
     for trial in range(min(LOOKED_AT, trials)):
         streams = Streams(seed_sequence(seed, trial))
         with contextlib.suppress(Exception):
             run(streams)
         found |= dict.fromkeys(streams.drawn())
+        counted |= dict.fromkeys(streams.counted)
     if not found:
         raise wrong("run", "it draws nothing from rng", 'Draw every random number from rng["source", k]')
-    return list(found)
+    return list(found), list(counted)
 
 
 def _of_function(
     run: Callable[..., Any], trials: int, seed: int, of: str | None, at: str, executor: Any, progress: bool | None
 ) -> Budget:
-    sources = _sources_of(run, seed, trials)
+    sources, counted = _sources_of(run, seed, trials)
     arms: dict[str, dict[str, Any]] = {"a": {"other": ()}, "b": {"other": tuple(sources)}}
     for i, source in enumerate(sources):
         arms[f"c{i}"] = {"other": (source,)}
         arms[f"d{i}"] = {"other": tuple(one for one in sources if one != source)}
-    simulation = simulate(_Worlds(run, sources), trials, seed=seed, arms=arms, executor=executor, progress=progress)
-    errors = _Errors(simulation, sources, at)
+    worlds = _Worlds(run, sources, counted, at)
+    simulation = simulate(worlds, trials, seed=seed, arms=arms, executor=executor, progress=progress)
+    errors = _Errors(simulation, sources, counted, at)
     said = estimated(
         [errors.of[name] for name in arms], sources, list(zip(errors.names, errors.units)),
         {"all": range(len(errors.names)), **errors.groups}, errors.variance, errors.left_out, seed, at, of,
+        errors.counted,
     )  # fmt: skip
     made = Budget(_texts(said), simulation)
     _warn_of_shifts(sources, errors)
@@ -377,7 +410,8 @@ def budget(
     run : function, path or str
         A function as of `credence.simulate`, which draws by the names of the sources,
         ``rng["measurement", k].normal()`` at step k; what it draws from ``rng`` itself is the source ``"rest"``. Its
-        `Run` has ``error``. Or a scenario file, or the text of one, as of `credence.run`.
+        `Run` has ``error``. What of P it counts for each it may say by ``rng.counts("measurement", P_s)``, P_s
+        [step, n, n]. Or a scenario file, or the text of one, as of `credence.run`.
     trials : int
         Of each of the 2S + 2 runs, S the number of sources.
     seed : int

@@ -267,3 +267,45 @@ def test_intervals_of_a_linear_function_cover():
             held[int(one["source"])] += low <= scales[int(one["source"])] <= high
     assert (held / 400 > 0.91).all(), held / 400
     assert (held / 400 < 0.98).all(), held / 400
+
+
+def counted(rng, wrong=None):
+    """The linear filters, which say what of P they count: in closed form, or wrong in one way."""
+    run = linear(rng)
+    of = {name: np.zeros((STEPS, 2, 2)) for name in NOISE}
+    for j, gain in enumerate(GAIN):
+        now = {"start": NOISE["start"] ** 2, "process": 0.0, "measurement": 0.0}
+        for k in range(STEPS):
+            now = {name: (DECAY * (1 - gain)) ** 2 * value for name, value in now.items()}
+            now["process"] += ((1 - gain) * NOISE["process"]) ** 2
+            now["measurement"] += (gain * NOISE["measurement"]) ** 2
+            for name, value in now.items():
+                of[name][k, j, j] = value
+    P = sum(of.values())
+    if wrong == "sum":
+        of["start"] = 1.01 * of["start"]
+    for name in list(of)[1 if wrong == "sometimes" and rng["start"].uniform() < 0.5 else 0 :]:
+        rng.counts(name, of[name][:, 0] if wrong == "shape" else of[name])
+    return credence.Run(run.error, P, component_names=["x", "y"], component_units=["m", "rad"])
+
+
+@pytest.mark.parametrize("at", ["last", "mean"])
+def test_what_a_function_counts_stands_beside_what_each_source_contributes(at):
+    budget = credence.budget(counted, 300, at=at, progress=False)
+    assert budget.counted_trials == 300
+    for name, gain in zip(("x", "y"), GAIN):
+        expected = variances(gain, at)
+        for one in budget[name].contributions:
+            assert one.p_counts**2 == pytest.approx(expected[one.source], rel=1e-12)
+            assert one.ratio == pytest.approx(one.alone**2 / expected[one.source], rel=1e-9)
+    assert "P counts" in str(budget)
+    assert math.isnan(credence.budget(linear, 20, progress=False)["x"].contributions[0].p_counts)
+
+
+@pytest.mark.parametrize(("wrong", "words"), [
+    ("sum", "differs from covariance by"), ("shape", "are not all that of covariance"),
+    ("sometimes", "in other trials"),
+])  # fmt: skip
+def test_what_a_function_counts_must_add_up_to_P_in_every_trial(wrong, words):
+    with pytest.raises((credence.InputError, RuntimeError), match=words):
+        credence.budget(counted, 20, options={"wrong": wrong}, progress=False)

@@ -2,11 +2,9 @@
 // What P counts for each source, of some trials of a world of SLAM that are run once more, one by one.
 
 #include <credence/detail/world.hpp>
-#include <credence/error.hpp>
-#include <credence/text.hpp>
 
 #include "slam/estimators/attributed.hpp"
-#include "slam/trial/problem.hpp"
+#include "worlds/counted_trials.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,12 +31,6 @@ inline std::vector<CountedSource> counted_sources(const FilterParameters& filter
         [&](FilterParameters& own) { own.variance_feature = (1 - share_of_walk) * filter.variance_feature; });
     if (filter.edge_count > 0) add("edges", [&](FilterParameters& own) { own.variance_edge = filter.variance_edge; });
     return sources;
-}
-
-/// Trials that are run for it: 256, or fewer where their states are large and their steps many.
-inline std::int64_t counted_trials(const CommonView& view, std::int64_t trials) {
-    const double room = 4e7 / (static_cast<double>(view.poses) * view.state_size * view.state_size);
-    return std::min(trials, std::clamp(static_cast<std::int64_t>(room), std::int64_t{16}, std::int64_t{256}));
 }
 
 inline namespace CREDENCE_TARGET {
@@ -100,7 +92,6 @@ private:
 template <class Attributing, class Run>
 CountedVariances count_variances(const CommonView& view, const std::vector<CountedSource>& sources,
                                  Attributing& estimator, std::int64_t trials, int column_count, const Run& run) {
-    constexpr double largest_rest = 1e-6;
     const auto n = static_cast<std::size_t>(view.state_size);
     CountedVariances none{{}, std::vector<std::vector<double>>(sources.size(), std::vector<double>(n)), 0}, mean = none;
     for (const CountedSource& source : sources) mean.sources.push_back(source.name);
@@ -111,11 +102,8 @@ CountedVariances count_variances(const CommonView& view, const std::vector<Count
         PartsOfTrial<Attributing> parts(view, estimator, one);
         run(trial, parts, columns.data());
         if (columns.end()[-2] != 0) continue;
-        if (!(parts.largest_rest() <= largest_rest))
-            throw Failure("cannot tell what P counts for each source",
-                          "in trial " + std::to_string(trial) + " they differ from P by " +
-                              to_text(parts.largest_rest()) + " of it",
-                          "An estimator may not condition P by take_in and turn_covariance alone");
+        check_rest(parts.largest_rest(), trial,
+                   "An estimator may not condition P by take_in and turn_covariance alone");
         ++mean.trials;
         for (std::size_t i = 0; i < n; ++i) {
             const double share = parts.there(i);

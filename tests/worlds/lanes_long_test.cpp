@@ -257,6 +257,29 @@ TEST_CASE("lanes: every target gives the same bits") {
     }
 }
 
+TEST_CASE("lanes: what P counts has the same bits in every target, and is to 1e-12 that of one trial at a time") {
+    const Scenario scenario = read_scenario_text(
+        "[scenario]\nworld = tracker\nposes = 12\n[draws]\nerrors = mean\n", "test", "mine");
+    OwnReport report = report_of<Tracker>({});
+    report.budget.errors = KeptErrors::mean;
+    report.sources.assign(std::begin(Tracker::sources), std::end(Tracker::sources));
+    for (std::size_t arm = 0; arm < 2; ++arm) {
+        const CountedVariances one = own_simulation(scenario, report, one_trial<Tracker>({}))->counted(arm, 1, 20);
+        CHECK(one.trials == 20);
+        std::vector<std::vector<double>> first;
+        for (const std::string& target : target_names()) {
+            const Forced forced(target);
+            const CountedVariances counted = simulation_of(scenario)->counted(arm, 1, 20);
+            CHECK(counted.sources == one.sources);
+            if (first.empty()) first = counted.variance;
+            CHECK(counted.variance == first);
+            for (std::size_t s = 0; s < first.size(); ++s)
+                for (std::size_t j = 0; j < 4; ++j)
+                    CHECK(counted.variance[s][j] == Approx(one.variance[s][j]).epsilon(1e-12).margin(1e-12));
+        }
+    }
+}
+
 TEST_CASE("lanes: trouble of every kind occurs among the random scenarios, as does a pack of which all trials fail") {
     Troubled::Settings s;
     s.trouble = 0.3;

@@ -11,6 +11,7 @@
 #include <credence/ini.hpp>
 #include "files/merge/merge.hpp"
 #include "report/format.hpp"
+#include "study/budget.hpp"
 #include <credence/report.hpp>
 #include <credence/detail/store.hpp>
 #include "files/stored_run.hpp"
@@ -62,11 +63,42 @@ struct Short : Spoiled {
     }
 };
 
+/// A scalar random walk seen at every step, whose arms count its two sources: right, wrong, and once too rarely.
+struct Counting {
+    struct Settings {};
+    static constexpr const char* name = "counting";
+    static constexpr const char* sources[] = {"walk", "measurement"};
+    static void keys(OwnKeys<Settings>&) {}
+    static std::vector<Component> components(const Settings&) { return {{"x", "m"}}; }
+    static std::vector<ComponentGroup> groups(const Settings&) { return {}; }
+    static std::vector<std::string> arms(const Settings&) { return {"right", "wrong", "rare", "silent", "unknown"}; }
+    static int innovation_rows(const Settings&) { return 0; }
+    static void run(const Settings&, OwnTrial& trial) {
+        double e = 0, of_walk = 0, of_measurement = 0;
+        for (int k = 1; k < trial.poses(); ++k) {
+            e -= trial.normal(0, k).x();
+            of_walk += 1;
+            const double P = of_walk + of_measurement, K = P / (P + 0.25);
+            e = (1 - K) * e + 0.5 * K * trial.normal(1, k).x();
+            of_walk *= (1 - K) * (1 - K);
+            of_measurement = (1 - K) * (1 - K) * of_measurement + 0.25 * K * K;
+            const auto count = [&](int source, double variance) {
+                trial.counts(source, Eigen::Matrix<double, 1, 1>(variance));
+            };
+            if (trial.arm() < 3) count(0, of_walk);
+            if (trial.arm() < 2 || (trial.arm() == 2 && k > 1)) count(1, of_measurement * (trial.arm() == 1 ? 1.1 : 1));
+            if (trial.arm() == 4) count(16, 1);
+            trial.step(Eigen::Matrix<double, 1, 1>(e), Eigen::Matrix<double, 1, 1>(of_walk + of_measurement));
+        }
+    }
+};
+
 /// The worlds of this file, added once.
 const bool worlds_added = [] {
     add_own_world<Tracker>();
     add_own_world<Spoiled>();
     add_own_world<Short>();
+    add_own_world<Counting>();
     return true;
 }();
 
@@ -100,6 +132,46 @@ TEST_CASE("own world: the filter that knows its model is consistent, the calm on
     CHECK(kf.nis.front().ratio == Approx(1).margin(0.02));
     CHECK(std::abs(kf.whiteness.front().correlation) < kf.whiteness.front().simultaneous_bound);
     CHECK(calm.whiteness.front().correlation > 5 * calm.whiteness.front().bound);
+}
+
+TEST_CASE("own world: what P counts for each source is what the world says, and adds up to P") {
+    // All is seen at every step, so that the gains of all trials are the same, and the error of a source is what the
+    // right filter counts for it.
+    const Scenario all_seen = tracker({{"sensor.detection", "1"}, {"scenario.poses", "12"}});
+    for (const KeptErrors at : {KeptErrors::last, KeptErrors::mean}) {
+        Study study = new_study(budget_scenarios(all_seen, at), 1);
+        RunOptions options;
+        options.trials = 4000;
+        run_study(study, options);
+        const std::vector<ArmBudget> budgets = budgets_of(study);
+        REQUIRE(budgets.size() == 2);
+        for (const BudgetPart& part : budgets[0].parts) {
+            CAPTURE(part.name);
+            double counted = 0;
+            for (const Contribution& one : part.contributions) {
+                CAPTURE(one.source);
+                counted += one.p_counts * one.p_counts;
+                if (one.source == "detection") continue;
+                CHECK(one.alone * one.alone == Approx(one.p_counts * one.p_counts).epsilon(0.12).margin(1e-9));
+            }
+            CHECK(std::sqrt(counted) == Approx(part.p_says).epsilon(1e-9));
+        }
+        CHECK(budgets[0].counted_trials == 256);
+        const auto ratio = [&](const ArmBudget& budget) {
+            return std::ranges::find(budget.parts.front().contributions, "acceleration", &Contribution::source)->ratio;
+        };
+        CHECK(ratio(budgets[0]) == Approx(1).epsilon(0.12));
+        CHECK(ratio(budgets[1]) > 3);  // it assumes a fifth of Q
+    }
+
+    const Scenario counting = read_scenario_text("[scenario]\nworld = counting\nposes = 5\n", "test", "mine");
+    const auto counted = [&](std::size_t arm) { return simulation_of(counting)->counted(arm, 1, 3); };
+    CHECK(counted(0).trials == 3);
+    CHECK(counted(0).sources == std::vector<std::string>{"walk", "measurement"});
+    CHECK_THROWS_WITH(counted(1), Contains("they differ from P by 0.0"));
+    CHECK_THROWS_WITH(counted(2), Contains("Give every source at every step"));
+    CHECK(counted(3).trials == 0);
+    CHECK_THROWS_WITH(counted(4), Contains("a source that it does not have counts"));
 }
 
 TEST_CASE("own world: the same bits for any number of threads, over shards, and after resuming") {

@@ -19,6 +19,9 @@ struct LaneStep {
     const double* S = nullptr;           ///< [rows, rows, lanes]
 };
 
+/// What P counts for each source in one trial.
+class CountedTrial;
+
 /// Several trials under one arm, and what the engine does for them in the same target.
 struct LanePack {
     const std::string *world = nullptr, *arm_name = nullptr;
@@ -34,6 +37,9 @@ struct LanePack {
     void (*uniform)(const LanePack&, int source, int pose, int index, double* draw) = nullptr;  ///< draw [lanes]
     /// Evaluates a step. False where every trial of the pack has failed.
     bool (*step)(LanePack&, const LaneStep&) = nullptr;
+    CountedTrial* counted = nullptr;  ///< of the trial in lane 0, where it is asked for
+    /// Takes in the diagonal of a P_s, or of the whole of P at the end of a step: n numbers, one each `stride`.
+    void (*count)(const LanePack&, int source, const double* variances, int stride) = nullptr;
 };
 
 /// A user's world in one target: it runs a pack, of as many trials as the target has lanes.
@@ -43,6 +49,7 @@ using RunPack = void (*)(const void* settings, LanePack& pack);
 [[noreturn]] void refuse(const LanePack& pack, const char* what);
 /// Leaves the world's function, once every trial of the pack has failed.
 [[noreturn]] void leave(const LanePack& pack);
+inline constexpr int whole_of_P = -1;
 /// The index of a draw as a key has it. Two keys that the counter could not tell apart would be one draw; they end the
 /// run with std::logic_error.
 int rare_index(const std::string& world, int source, int pose, int index);

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace credence {
@@ -15,6 +16,7 @@ struct OwnReport {
     std::vector<Column> columns{};      ///< its own; others are there in every world
     int largest_innovation = 0;         ///< m; 0: the trials give no innovations
     BudgetSettings budget{};
+    std::vector<std::string> sources{};  ///< of its draws, by name
 };
 
 /// Columns of such a world: trace_P, its own, squared_error, nees_ratio, nis_ratio, mean_trace_P, log_score, status,

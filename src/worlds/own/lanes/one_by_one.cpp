@@ -109,6 +109,12 @@ public:
         if (column >= pack_.own_column_count) refuse(pack_, "a column that it does not have is set");
         pack_.own_columns[column * lanes_ + lane_] = value;
     }
+    bool counting() const override { return pack_.counted != nullptr; }
+    void counts(int source, const Matrix& P_s) override {
+        if (!counting() || lane_ > 0) return;
+        if (P_s.rows() != n_) refuse(pack_, "a P_s of another size than the state");
+        pack_.count(pack_, source, Eigen::VectorXd(P_s.diagonal()).data(), 1);
+    }
     void step(const Vector& error, const Matrix& P) override {
         take(error, P);
         end_step(error, P);

@@ -5,12 +5,15 @@
 #include "engine/octets.hpp"
 #include "numeric/decompositions.hpp"
 #include "scenario/state_series.hpp"
+#include "worlds/counted_trials.hpp"
 #include "worlds/own/lanes/one_by_one.hpp"
 #include "worlds/own/lanes/recorder.hpp"
 #include "worlds/own/trial_ends.hpp"
 #include "worlds/simulate.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 
@@ -19,6 +22,29 @@ namespace credence {
 void refuse(const LanePack& pack, const char* what) { throw WorldMistake("world " + *pack.world + ": " + what + "."); }
 
 void leave(const LanePack&) { throw TrialEnds(); }
+
+/// Diagonals of P_s by source, [K - 1, n], and of P.
+class CountedTrial {
+public:
+    std::vector<double> of_source[source_count], whole;
+
+    std::vector<double>& of(int source) { return source == whole_of_P ? whole : of_source[source]; }
+    bool none() const {
+        return std::ranges::all_of(of_source, [](const std::vector<double>& one) { return one.empty(); });
+    }
+    /// How far they are from adding up to P, relative to it; infinite where steps or sources are left out.
+    double rest() const {
+        std::vector<double> sum(whole.size());
+        for (const std::vector<double>& one : of_source) {
+            if (!one.empty() && one.size() != whole.size()) return std::numeric_limits<double>::infinity();
+            std::ranges::transform(one, sum, sum.begin(), std::plus());
+        }
+        double largest = 0;
+        for (std::size_t i = 0; i < sum.size(); ++i)
+            largest = std::max(largest, std::abs(sum[i] - whole[i]) / whole[i]);
+        return largest;
+    }
+};
 
 int rare_index(const std::string& world, int source, int pose, int index) {
     const auto check = [&](const char* what, int value, int largest) {
@@ -61,6 +87,12 @@ void record_step(LaneRecorder& recorder, const LanePack& pack, const LaneStep& s
     recorder.take(pack, step, goes_on);
 }
 
+void count_one(const LanePack& pack, int source, const double* variances, int stride) {
+    if (source < whole_of_P || source >= source_count) refuse(pack, "a source that it does not have counts");
+    std::vector<double>& to = pack.counted->of(source);
+    for (int j = 0; j < pack.state_size; ++j) to.push_back(variances[j * stride]);
+}
+
 class LaneSimulation : public Simulation {
 public:
     LaneSimulation(const Scenario& scenario, const OwnReport& report, const Target& target, RunPack run,
@@ -73,6 +105,7 @@ public:
           innovations_(report.largest_innovation > 0 ? Innovations::given : Innovations::none),
           all_series_(scenario.components, scenario.groups, innovations_),
           declared_(scenario.groups),
+          sources_(report.sources),
           coverage_bounds_(coverage_bounds(declared_)) {
         for (const ComponentGroup& group : declared_)
             groups_.push_back({group.first, group.count, group.contiguous() ? nullptr : group.components.data()});
@@ -137,6 +170,34 @@ public:
         return trajectory;
     }
 
+    CountedVariances counted(std::size_t arm, std::uint64_t root_seed, std::int64_t trials) const override {
+        const auto n = static_cast<std::size_t>(view_.state_size), own = sources_.size();
+        CountedVariances mean{sources_, std::vector<std::vector<double>>(own, std::vector<double>(n)), 0};
+        BlockMemory one;
+        one.octets.prepare(shape_, 1, false);
+        for (std::int64_t trial = 0; trial < counted_trials(view_, trials); ++trial) {
+            CountedTrial counted;
+            OwnView view = view_of(arm);
+            view.counted = &counted;
+            view.count = count_one;
+            target_.simulate_own(view, one.octets.batch(root_seed, trial, one.room.of_size(workspace_size(arm))));
+            if (counted.none()) return {};
+            if (one.octets.columns[(columns_.size() - 2) * octet] != 0) continue;
+            check_rest(counted.rest(), trial,
+                       "Give every source at every step, propagated with the filter's own gains");
+            ++mean.trials;
+            for (std::size_t s = 0; s < own; ++s)
+                for (std::size_t j = 0; j < n && !counted.of_source[s].empty(); ++j) {
+                    double variance = 0;
+                    for (int i = 0; i < view_.kept_count; ++i)
+                        variance += counted.of_source[s][static_cast<std::size_t>(view_.kept_steps[i]) * n + j];
+                    mean.variance[s][j] += (variance / view_.kept_count - mean.variance[s][j]) /
+                                           static_cast<double>(mean.trials);
+                }
+        }
+        return mean;
+    }
+
 private:
     OwnView view_of(std::size_t arm) const {
         OwnView view = view_;
@@ -153,6 +214,7 @@ private:
     Innovations innovations_;
     StateSeries all_series_;
     std::vector<ComponentGroup> declared_;
+    std::vector<std::string> sources_;
     std::vector<GroupPlace> groups_;       ///< of the declared ones
     std::vector<double> coverage_bounds_;  ///< [groups, levels]
     std::vector<char> whole_;              ///< [own columns]

@@ -63,6 +63,8 @@ public:
         normal = draw_normal;
         uniform = draw_uniform;
         step = take_step;
+        counted = view.counted;
+        count = view.count;
     }
 
     PackOfTrials(const PackOfTrials&) = delete;
@@ -121,6 +123,7 @@ private:
         ++steps;
         const bool goes_on = any(going_on());
         if (view_.record != nullptr) view_.record(*view_.recorder, *this, step, goes_on);
+        if (counted != nullptr) count(*this, whole_of_P, step.P, lanes<Real> * (state_size + 1));
         return goes_on;
     }
 

@@ -35,6 +35,8 @@ struct OwnView : CommonView {
     /// Of a trial that is run again, in lane 0: `record` receives each of its steps [LaneRecorder].
     void (*record)(LaneRecorder& recorder, const LanePack& pack, const LaneStep& step, bool goes_on) = nullptr;
     LaneRecorder* recorder = nullptr;
+    CountedTrial* counted = nullptr;  ///< likewise, where it is asked what P counts
+    void (*count)(const LanePack& pack, int source, const double* variances, int stride) = nullptr;
 };
 
 }  // namespace credence
