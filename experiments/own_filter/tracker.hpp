@@ -7,7 +7,6 @@
 //   z_k = p_k + sigma w_k,     every `seen` steps on average
 // Kalman filter: [Bar-Shalom, Li, Kirubarajan 2001, 5.2, 6.3.2]
 
-#include <credence/filters.hpp>
 #include <credence/own_world.hpp>
 
 struct Tracker {

@@ -9,7 +9,6 @@
 //   iterated_update(P, R, passes, linearise)            Gauss-Newton, of Bell and Cathey
 //   unscented_transform(P, points, function)            by sigma points with van der Merwe's weights
 //   unscented_update(P, predicted, z, R)
-//   CountedCovariance                                   what P counts for each source of noise
 //   SO2, SO3, SE2, SE3, SE23                            exp, log, left_jacobian, inverse_left_jacobian, adjoint;
 //                                                       right_jacobian<Group>(xi)
 //   jacobian_mismatch(function, x, J)                   whether a Jacobian is that of the function

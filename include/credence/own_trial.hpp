@@ -203,5 +203,29 @@ private:
     OwnTrial& trial_;
 };
 
+/// What P counts for each of `count` sources: P = sum of P_s, propagated with the filter's own gains, which are 0 in the
+/// lanes that measure nothing. For trial.counts, before each step, where trial.counting(). [docs/budget.md]
+template <class Real, int n, int count>
+struct CountedCovariance {
+    Eigen::Matrix<Real, n, n> parts[count];
+
+    CountedCovariance() {
+        for (auto& part : parts) part.setZero();
+    }
+    /// P_s <- F P_s F'. Then add Q_s to the part of its source.
+    template <class DerivedF>
+    void predict(const Eigen::MatrixBase<DerivedF>& F) {
+        for (auto& part : parts) part = Eigen::Matrix<Real, n, n>(F * part * F.transpose());
+    }
+    /// P_s <- (I - K H) P_s (I - K H)', + K R K' of the source that the measurement's noise is. K [n, m]
+    template <class DerivedK, class DerivedH, class DerivedR>
+    void update(const Eigen::MatrixBase<DerivedK>& K, const Eigen::MatrixBase<DerivedH>& H,
+                const Eigen::MatrixBase<DerivedR>& R, int source) {
+        const Eigen::Matrix<Real, n, n> kept = Eigen::Matrix<double, n, n>::Identity() - K * H;
+        predict(kept);
+        parts[source] += K * R * K.transpose();
+    }
+};
+
 }  // namespace CREDENCE_TARGET
 }  // namespace credence

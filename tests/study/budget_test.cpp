@@ -134,7 +134,7 @@ TEST_CASE("budget: what P counts for the sources adds up to P, for every estimat
     explore.sensor.detection = 0.8;
     explore.filter.gate = 0.99;
     explore.filter.measurement = 1.3;
-    explore.walls = {{{2, -4}, {2, 3}}};
+    explore.walls = {{{-2, 1}, {2, 1}}};  // which hides landmarks, and ends no motion along the path
     explore.arms.estimators = {Estimator::ekf, Estimator::ideal, Estimator::fej, Estimator::riekf, Estimator::iekf};
     explore.budget.errors = KeptErrors::mean;
     ExploreSettings with_prior = explore, known = explore;

@@ -64,9 +64,9 @@ struct Short : Spoiled {
 };
 
 /// A scalar random walk seen at every step, whose arms count its two sources: right, wrong, and once too rarely.
-struct Counting {
+struct Sourced {
     struct Settings {};
-    static constexpr const char* name = "counting";
+    static constexpr const char* name = "sourced";
     static constexpr const char* sources[] = {"walk", "measurement"};
     static void keys(OwnKeys<Settings>&) {}
     static std::vector<Component> components(const Settings&) { return {{"x", "m"}}; }
@@ -98,7 +98,7 @@ const bool worlds_added = [] {
     add_own_world<Tracker>();
     add_own_world<Spoiled>();
     add_own_world<Short>();
-    add_own_world<Counting>();
+    add_own_world<Sourced>();
     return true;
 }();
 
@@ -164,14 +164,14 @@ TEST_CASE("own world: what P counts for each source is what the world says, and 
         CHECK(ratio(budgets[1]) > 3);  // it assumes a fifth of Q
     }
 
-    const Scenario counting = read_scenario_text("[scenario]\nworld = counting\nposes = 5\n", "test", "mine");
+    const Scenario counting = read_scenario_text("[scenario]\nworld = sourced\nposes = 5\n", "test", "mine");
     const auto counted = [&](std::size_t arm) { return simulation_of(counting)->counted(arm, 1, 3); };
     CHECK(counted(0).trials == 3);
     CHECK(counted(0).sources == std::vector<std::string>{"walk", "measurement"});
-    CHECK_THROWS_WITH(counted(1), Contains("they differ from P by 0.0"));
-    CHECK_THROWS_WITH(counted(2), Contains("Give every source at every step"));
+    CHECK_THROWS_WITH(counted(1), Catch::Contains("they differ from P by 0.0"));
+    CHECK_THROWS_WITH(counted(2), Catch::Contains("Give every source at every step"));
     CHECK(counted(3).trials == 0);
-    CHECK_THROWS_WITH(counted(4), Contains("a source that it does not have counts"));
+    CHECK_THROWS_WITH(counted(4), Catch::Contains("a source that it does not have counts"));
 }
 
 TEST_CASE("own world: the same bits for any number of threads, over shards, and after resuming") {

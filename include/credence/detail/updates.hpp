@@ -144,30 +144,5 @@ auto iterated_update(const Eigen::MatrixBase<DerivedP>& P, const Eigen::MatrixBa
     return result;
 }
 
-/// What P counts for each of `count` sources, P = sum of P_s, propagated with the filter's own gains, which are 0 in the
-/// lanes that measure nothing. Run it where trial.counting(), and tell trial.counts(s, parts[s]) before each step.
-/// [docs/budget.md]
-template <class Real, int n, int count>
-struct CountedCovariance {
-    Eigen::Matrix<Real, n, n> parts[count];
-
-    CountedCovariance() {
-        for (auto& part : parts) part.setZero();
-    }
-    /// P_s <- F P_s F'. Then add Q_s to the part of its source.
-    template <class DerivedF>
-    void predict(const Eigen::MatrixBase<DerivedF>& F) {
-        for (auto& part : parts) part = predicted_covariance(F, part);
-    }
-    /// P_s <- (I - K H) P_s (I - K H)', + K R K' of the source that the measurement's noise is. K [n, m]
-    template <class DerivedK, class DerivedH, class DerivedR>
-    void update(const Eigen::MatrixBase<DerivedK>& K, const Eigen::MatrixBase<DerivedH>& H,
-                const Eigen::MatrixBase<DerivedR>& R, int source) {
-        const Eigen::Matrix<Real, n, n> kept = Eigen::Matrix<double, n, n>::Identity() - K * H;
-        for (auto& part : parts) part = predicted_covariance(kept, part);
-        parts[source] += K * R * K.transpose();
-    }
-};
-
 }  // namespace CREDENCE_TARGET
 }  // namespace credence
