@@ -203,8 +203,8 @@ private:
     OwnTrial& trial_;
 };
 
-/// What P counts for each of `count` sources: P = sum of P_s, propagated with the filter's own gains, which are 0 in the
-/// lanes that measure nothing. For trial.counts, before each step, where trial.counting(). [docs/budget.md]
+/// What P counts for each of `count` sources: P = sum of P_s, propagated with the filter's own gains, which are 0 in
+/// the lanes that measure nothing. For trial.counts, before each step, where trial.counting(). [docs/budget.md]
 template <class Real, int n, int count>
 struct CountedCovariance {
     Eigen::Matrix<Real, n, n> parts[count];

@@ -57,7 +57,7 @@ class _Worlds:
         if unknown := sorted(drawn.keys() - set(self.sources)):
             why = f"draws from {printable(unknown[0])}, which none of the first {LOOKED_AT} trials does"
             raise InputError(f"the function {why}. Draw every source in every run.")
-        counts = {f"draws_{i}": drawn.get(name, {}).get((), 0) for i, name in enumerate(self.sources)}
+        counts: dict[str, float] = {f"draws_{i}": drawn.get(name, {}).get((), 0) for i, name in enumerate(self.sources)}
         if not other:
             counts |= self._counted(streams.counted, np.asarray(result.given().get("covariance", ())))
         return Run(**{**result.given(), "columns": {**(result.columns or {}), **counts}})
@@ -135,6 +135,8 @@ class Part:
         Root of the mean variance in the filter's own P of A; NaN where the runs have none.
     ratio : float
         Mean square error over that of P.
+    there : float
+        The share of its errors that are in the state in every run; the others are left out.
     """
 
     of: str
@@ -147,6 +149,7 @@ class Part:
     closes: bool
     p_says: float
     ratio: float
+    there: float
 
     @classmethod
     def of_json(cls, part: Mapping[str, Any]) -> Part:

@@ -304,8 +304,12 @@ def test_what_a_function_counts_stands_beside_what_each_source_contributes(at):
 
 @pytest.mark.parametrize(("wrong", "words"), [
     ("sum", "differs from covariance by"), ("shape", "are not all that of covariance"),
-    ("sometimes", "in other trials"),
 ])  # fmt: skip
 def test_what_a_function_counts_must_add_up_to_P_in_every_trial(wrong, words):
     with pytest.raises((credence.InputError, RuntimeError), match=words):
         credence.budget(counted, 20, options={"wrong": wrong}, progress=False)
+
+
+def test_a_trial_that_counts_other_sources_than_the_first_ones_has_failed():
+    budget = credence.budget(counted, 40, options={"wrong": "sometimes"}, progress=False)
+    assert 5 < budget.left_out < 35
