@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The study of docs/polygon.md, in a checkout: the world `polygon` as published and mended, with constant and ranged
-# noise, 10,000 trials each or as many as the first argument says; and on its paths some flaws mended by themselves.
+# noise, 1,000 trials each or as many as the first argument says; and on its paths some flaws mended by themselves.
 # Prints polygon.csv, means with 95 % intervals. GALLERY is the program, where it is built already.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -12,7 +12,7 @@ fi
 cd "$here/../.."
 CREDENCE=$GALLERY
 source experiments/study.sh
-trials=${1:-10000}
+trials=${1:-1000}
 columns="trace_P mean_trace_P unseen position_error rotation_error feature_error nees_ratio nees_per_dimension:pose
   nees_per_dimension:features clearance rolled"
 

@@ -19,6 +19,9 @@ inline constexpr int trials_together = 64;
 
 inline namespace CREDENCE_TARGET {
 
+/// A number of bytes up to the next boundary of 64.
+constexpr std::size_t padded(std::size_t bytes) { return (bytes + 63) / 64 * 64; }
+
 /// Memory one piece after the other, each from a 64-byte boundary on; without a start it only counts.
 class Pieces {
 public:
@@ -26,7 +29,7 @@ public:
     template <class T>
     T* take(std::size_t count) {
         const std::size_t at = size_;
-        size_ += (count * sizeof(T) + 63) / 64 * 64;
+        size_ += padded(count * sizeof(T));
         return start_ == nullptr ? nullptr : reinterpret_cast<T*>(start_ + at);
     }
     std::size_t size() const { return size_; }
@@ -86,7 +89,6 @@ public:
     }
 
 private:
-    static std::size_t padded(std::size_t bytes) { return (bytes + 63) / 64 * 64; }
 
     void choose_together(const Planner& planner, std::uint64_t root_seed, std::int64_t first, int trials,
                          Command<Real>* commands) {
@@ -268,7 +270,7 @@ struct Chosen {
 /// What a batch of an arm needs, with the arm's planner or -1.
 template <class Trial>
 std::size_t workspace_size_of(const typename Trial::View& problem, int planner) {
-    const std::size_t of_batch = (BatchOf<Trial>::workspace_size(problem) + 63) / 64 * 64;
+    const std::size_t of_batch = padded(BatchOf<Trial>::workspace_size(problem));
     if constexpr (Trial::consults)
         return of_batch + (planner < 0 ? 0 : Consulted<Trial>::workspace_size(problem, block_size));
     else

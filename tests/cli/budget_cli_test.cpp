@@ -37,6 +37,10 @@ TEST_CASE("cli: a budget is the same of a scenario, of a results file and of sha
     CHECK_THAT(text.out, Contains("error of position [dm] at the last step, by its sources: 600 trials of "
                                   "small/fixed.ekf") && Contains("P counts") && Contains("small/greedy.ekf"));
     CHECK_THAT(here.credence("budget whole.h5 --format csv").out, Contains("small,fixed.ekf,position,dm,odometry,"));
+    REQUIRE(here.credence("budget whole.h5 --of position -o why.html").exit_code == 0);
+    const std::string page = here.read("why.html");
+    CHECK_THAT(page, Contains("Errors at the last step, by its sources: 600 trials of small/greedy.ekf.") &&
+                         Contains("contributions to position") && Contains("odometry, P counts: "));
     CHECK_THAT(here.credence("budget small.ini --trials 300 --quiet --at mean").out,
                Contains("error of heading [rad] on average over the steps"));
     CHECK(here.credence("replay whole.h5 --scenario small-C-walk --arm fixed.ekf --trial 299").exit_code == 0);

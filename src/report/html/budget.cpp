@@ -53,7 +53,8 @@ Html part_table(const BudgetPart& part, bool counts) {
     Table table(name_with_unit(part), heads);
     for (const Contribution& one : part.contributions) {
         const Cell alone = std::isnan(one.alone) ? Cell("< " + short_number(one.alone95.high)) : short_cell(one.alone);
-        std::vector<Cell> cells{alone, range_cell(one.alone95), share_cell(one.share), short_cell(one.with_others)};
+        std::vector<Cell> cells{alone, range_cell(one.alone95), one.share >= 0 ? share_cell(one.share) : Cell("-"),
+                                short_cell(one.with_others)};
         if (counts) cells.insert(cells.end(), {short_cell(one.p_counts), share_cell(one.ratio)});
         table.row(one.source, cells);
     }
@@ -74,11 +75,11 @@ std::string budget_html(const BudgetReport& report, const std::string& made_by) 
         Html tables;
         for (const BudgetPart& part : arm.parts) tables += part_table(part, counts);
         body += section(id, escaped(arm.scenario + "/" + arm.arm),
-                        element("p", escaped(arm_sentence(arm))) +
+                        element("p", escaped("Errors " + arm_sentence(arm) + ".")) +
                             bars(part_of(arm, report.of), "bars." + std::to_string(i), counts) + tables);
     }
     const Html header =
-        "<h1>Which source is the error of?</h1>\n"_html +
+        "<h1>Why is the error what it is?</h1>\n"_html +
         element("p", escaped("Each source of noise was drawn anew with all others held. Root seed " +
                              std::to_string(report.root_seed) + ". Page made by " + made_by + "."));
     return document("credence: budget", header, body);

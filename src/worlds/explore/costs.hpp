@@ -20,8 +20,8 @@ private:
 /// What the determinants of all candidates have in common [docs/theory/model.md, Determinants].
 template <class Real>
 struct PoseGivenFeatures {
-    Real of_features = Real(0);        ///< log det P_ff of what is in the state
-    Real xx[3], xy[3];                 ///< C, the pose's covariance given the features: its diagonal; 01, 02, 12
+    Real of_features = Real(0);  ///< log det P_ff of what is in the state
+    Symmetric<Real, 3> pose;     ///< C, the pose's covariance given the features
 };
 
 /// Where a controller computes, and what a trial knows of the world beside the belief.
@@ -101,18 +101,15 @@ CREDENCE_FLAT Real trace_in_measurement_space(const MeasurementSpace<ExploreLayo
     return cost;
 }
 
-/// The product of the pivots of C + sigma^2 t t', t = (1, u_y, -u_x), which it calls visit(i, pivot) with.
+/// Calls visit(i, pivot) with the pivots of C + sigma^2 t t', t = (1, u_y, -u_x).
 template <class Real, class Visit>
 CREDENCE_INLINE void each_pose_pivot(const PoseGivenFeatures<Real>& given, Real variance, const Vector2<Real>& u,
                                      const Visit& visit) {
     const Real t[] = {Real(1), u.y, -u.x};
-    Symmetric<Real, 3> C, room;
-    for (int i = 0; i < 3; ++i) {
-        C.entry[i][i] = fma(variance * t[i], t[i], given.xx[i]);
-        for (int j = i + 1; j < 3; ++j) C.entry[i][j] = fma(variance * t[i], t[j], given.xy[i + j - 1]);
-    }
+    Symmetric<Real, 3> room;
     int place = 0;
-    each_pivot(3, [&](int i, int j) { return C.entry[j][i]; }, room, [&](const Real& pivot) { visit(place++, pivot); });
+    each_pivot(3, [&](int i, int j) { return fma(variance * t[j], t[i], given.pose.entry[j][i]); }, room,
+               [&](const Real& pivot) { visit(place++, pivot); });
 }
 
 /// log det P+ of a candidate, of what is in the state: log(det P_ff det(C + sigma^2 t t') det N / det S)

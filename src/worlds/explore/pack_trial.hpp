@@ -18,7 +18,6 @@ struct ExploreTrial : WatchedTrial<ExploreView, ExploreLayout, Number, ExploreWo
     using Room = typename WatchedTrial<ExploreView, ExploreLayout, Number, ExploreWorkspaceOf<Number, Tag>>::Room;
     using Steps = ExploreSteps<Real, typename Tag::template type<ExploreLayout, Real>, KeyedDraws<Real>,
                                Detail<ExploreLayout, Real>>;
-    using Ahead = Belief<Real, ExploreLayout::capacity>;
     static constexpr bool consults = true;
     Explorer controller;
     Chosen<Real> chosen;
@@ -26,26 +25,14 @@ struct ExploreTrial : WatchedTrial<ExploreView, ExploreLayout, Number, ExploreWo
     ExploreTrial(Explorer one, const Chosen<Real>& by_planner) : controller(one), chosen(by_planner) {}
     static double truncate(const ExploreView& problem) { return problem.world.truncate; }
     static int column_count(const ExploreView&) { return explore_column_count; }
-    static std::size_t padded(std::size_t bytes) { return (bytes + 63) / 64 * 64; }
-    static std::size_t viewed_size(const ExploreView& problem) {
-        return padded(static_cast<std::size_t>(problem.grid.count() * problem.control.horizon) * sizeof(Mask<Real>));
-    }
-    static std::size_t cells_size(const ExploreView& problem) {
-        return padded(static_cast<std::size_t>(problem.grid.count()) * sizeof(int));
-    }
-    static std::size_t ahead_size(const ExploreView& problem) {
-        return problem.control.horizon > 1 ? static_cast<std::size_t>(problem.control.horizon) * sizeof(Ahead) : 0;
-    }
     static std::size_t room(const ExploreView& problem) {
-        return padded(sizeof(Room)) + viewed_size(problem) + 2 * cells_size(problem) + ahead_size(problem);
+        Pieces pieces;
+        place(problem, pieces);
+        return pieces.size();
     }
     static Room& enter(const ExploreView& problem, void* room, PackDetails<Real>& details) {
-        Room& entered = *static_cast<Room*>(room);
-        std::byte* behind = static_cast<std::byte*>(room) + padded(sizeof(Room));
-        entered.work.viewed = reinterpret_cast<Mask<Real>*>(behind);
-        entered.work.queue = reinterpret_cast<int*>(behind + viewed_size(problem));
-        entered.work.from = reinterpret_cast<int*>(behind + viewed_size(problem) + cells_size(problem));
-        entered.work.ahead = reinterpret_cast<Ahead*>(behind + viewed_size(problem) + 2 * cells_size(problem));
+        Pieces pieces(static_cast<std::byte*>(room));
+        Room& entered = *place(problem, pieces);
         entered.detail.watch(problem, details);
         return entered;
     }
@@ -74,6 +61,20 @@ struct ExploreTrial : WatchedTrial<ExploreView, ExploreLayout, Number, ExploreWo
     static void ahead(const ExploreView& problem, Steps& steps, int, const Price& price) {
         each_candidate_ahead<Real>(problem, steps.work().planner.still.mean, steps.work(), [](int, Mask<Real>) {},
                                    price);
+    }
+
+private:
+    /// The room, and behind it what a trial keeps of the cells and plans ahead in.
+    static Room* place(const ExploreView& problem, Pieces& pieces) {
+        const auto cells = static_cast<std::size_t>(problem.grid.count()),
+                   steps = static_cast<std::size_t>(problem.control.horizon);
+        Room* room = pieces.take<Room>(1);
+        auto* viewed = pieces.take<Mask<Real>>(steps * cells);
+        int *queue = pieces.take<int>(cells), *from = pieces.take<int>(cells);
+        auto* ahead = pieces.take<Belief<Real, ExploreLayout::capacity>>(steps > 1 ? steps : 0);
+        if (room != nullptr)
+            room->work.viewed = viewed, room->work.queue = queue, room->work.from = from, room->work.ahead = ahead;
+        return room;
     }
 };
 

@@ -131,10 +131,8 @@ private:
             note(present, P.entry[i][i], pivot);
         }
         given.of_features = of_features.log();
-        for (int i = 0; i < 3; ++i) {
-            given.xx[i] = A.entry[i][i];
-            for (int j = i + 1; j < 3; ++j) given.xy[i + j - 1] = A.entry[i][j];
-        }
+        for (int i = 0; i < 3; ++i)
+            for (int j = i; j < 3; ++j) given.pose.entry[i][j] = A.entry[i][j];
         const Real variance(problem_.filter.variance_heading);
         each_pose_pivot(given, variance, {Real(0), Real(0)}, [&](int i, const Real& pivot) {
             note(all_lanes<Real>(), P.entry[i][i] + (i == 0 ? variance : Real(0)), pivot);
