@@ -93,9 +93,9 @@ def by_determinant_gains(least, largest):
     return spans((-100 * row.gain / row.trace for row in begin(ahead, "log_det", "2")), least, largest)
 
 
-def from_frontier():
-    """Greedy less frontier, in every cell and by both criteria."""
-    return [row for key, row in found_less.items() if key[4] == "frontier"]
+def beside(other):
+    """Greedy less another controller, in every cell and by both criteria."""
+    return [row for key, row in found_less.items() if key[4] == other]
 
 
 def bound(difference):
@@ -270,15 +270,20 @@ CLAIMS = {
         lambda: extremes(ahead_cost, "times_two") == (4.68, 72.7) and
         extremes(ahead_cost, "times_three") == (39.4, 3040),
 
-    "**Greedy planning covers less than frontier in every cell, and its mean pose error is lower in all**, significantly "
-    "in 20 of 36.":
-        lambda: all(row.coverage < 0 and row.error < 0 for row in from_frontier()) and
-        sum(row.error < -bound(row.error) for row in from_frontier()) == 20,
-    "**That planning makes the filter more optimistic is shown in one cell only**: in open ground, with a view of 360° "
-    "and σ_head = 0.1, NEES/n is 1.32 by log det and 1.13 by frontier.":
-        lambda: [key[:4] for key, row in found_less.items() if key[4] == "frontier" and row.nees > bound(row.nees)]
-        == [("open", "360", "0.1", "log_det")] and
-        [round(found["open", "360", "0.1", c].nees, 2) for c in (LOG_DET, "frontier")] == [1.32, 1.13],
-    "In 11 of 36 it is significantly smaller.":
-        lambda: sum(row.nees < -bound(row.nees) for row in from_frontier()) == 11,
+    "**Greedy planning covers less than frontier in every cell, and its mean pose error is lower in all**, "
+    "significantly in 29 of 36.":
+        lambda: all(row.coverage < 0 and row.error < 0 for row in beside("frontier")) and
+        sum(row.error < -bound(row.error) for row in beside("frontier")) == 29,
+    "**Beside frontier, planning makes the filter more optimistic in one cell only**: in open ground, with a view of "
+    "360° and σ_head = 0.1, NEES/n is 1.31 by log det, 1.23 by trace and 1.13 by frontier.":
+        lambda: {key[:3] for key, row in found_less.items() if key[4] == "frontier" and row.nees > bound(row.nees)}
+        == {("open", "360", "0.1")} and
+        [round(found["open", "360", "0.1", c].nees, 2) for c in (LOG_DET, TRACE, "frontier")] == [1.31, 1.23, 1.13],
+    "In 25 of 36 it is significantly smaller.":
+        lambda: sum(row.nees < -bound(row.nees) for row in beside("frontier")) == 25,
+    "where the planner trusts its own estimates NEES/n is significantly higher in 12 of 36, and never lower, mostly in "
+    "rooms.":
+        lambda: [sum(sign * row.nees > bound(row.nees) for row in beside("informed")) for sign in (1, -1)] == [12, 0]
+        and sum(key[0] == "rooms" for key, row in found_less.items()
+                if key[4] == "informed" and row.nees > bound(row.nees)) > 6,
 }

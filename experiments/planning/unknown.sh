@@ -74,4 +74,4 @@ cell="world | view | σ_head"
       for other in fixed frontier informed; do less "${labels[i]}" $criterion "${stems[i]}" $other; done
     done
   done
-} | check_claims 128  # those that docs/planning.md has
+} | check_claims 1024  # those that docs/planning.md has
