@@ -13,6 +13,10 @@ const BudgetPart& part_of(const ArmBudget& arm, const std::string& name) {
     return name.empty() ? arm.parts.front() : *std::ranges::find(arm.parts, name, &BudgetPart::name);
 }
 
+std::string name_with_unit(const BudgetPart& part) {
+    return part.unit.empty() || part.unit == "1" ? part.name : part.name + " [" + part.unit + "]";
+}
+
 std::string arm_sentence(const ArmBudget& arm) {
     std::string text = arm.at == KeptErrors::last ? "at the last step" : "on average over the steps";
     text += ", by its sources: " + std::to_string(arm.trials) + " trials" +
@@ -82,9 +86,8 @@ std::string budget_text(const BudgetReport& report) {
     std::string text;
     for (const ArmBudget& arm : report.arms) {
         const BudgetPart& part = part_of(arm, report.of);
-        text += (text.empty() ? "error of " : "\nerror of ") + part.name;
-        if (part.unit != "1" && !part.unit.empty()) text += " [" + part.unit + "]";
-        text += " " + arm_sentence(arm) + "\n" + part_text(part, arm.counted_trials > 0);
+        text += (text.empty() ? "error of " : "\nerror of ") + name_with_unit(part) + " " + arm_sentence(arm) + "\n" +
+                part_text(part, arm.counted_trials > 0);
     }
     return text;
 }

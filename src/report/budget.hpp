@@ -18,6 +18,8 @@ struct BudgetReport {
 
 /// The part of that name; the first without one.
 const BudgetPart& part_of(const ArmBudget& arm, const std::string& name);
+/// `position [dm]`
+std::string name_with_unit(const BudgetPart& part);
 /// When its errors are, of how many trials of which arm.
 std::string arm_sentence(const ArmBudget& arm);
 

@@ -93,9 +93,10 @@ ArmBudget budget_of(const Worlds& worlds, std::size_t arm, std::uint64_t root_se
         return values;
     };
     errors.of = [&](std::size_t run, std::size_t component) { return read(*worlds[run], false, component); };
+    const bool grows = std::ranges::count(own.all_series, "state_dimension", &Series::name) > 0;
     for (std::size_t j = 0; j < n; ++j) {
         std::vector<char> there(errors.trials * errors.steps, 1);
-        for (const ScenarioResults* world : worlds) {  // what is absent from the state has no error
+        for (const ScenarioResults* world : grows ? worlds : Worlds{}) {  // what is absent from the state has no error
             const std::vector<double> values = read(*world, false, j);
             for (std::size_t i = 0; i < values.size(); ++i) there[i] = there[i] && !std::isnan(values[i]);
         }
@@ -104,7 +105,7 @@ ArmBudget budget_of(const Worlds& worlds, std::size_t arm, std::uint64_t root_se
         for (std::size_t i = 0; i < variances.size(); ++i)
             if (there[i]) sum += variances[i], ++count;
         errors.variance.push_back(count > 0 ? sum / count : 0);
-        errors.there.push_back(std::move(there));
+        if (grows) errors.there.push_back(std::move(there));
     }
     CountedVariances counted = simulation_of(scenario)->counted(arm, root_seed, own.trials);
     budget.counted_trials = counted.trials;

@@ -14,10 +14,6 @@ namespace {
 
 using namespace page;
 
-std::string name_with_unit(const BudgetPart& part) {
-    return part.unit.empty() || part.unit == "1" ? part.name : part.name + " [" + part.unit + "]";
-}
-
 /// Of each source the contribution alone with its interval, and what P counts.
 Html bars(const BudgetPart& part, const std::string& id, bool counts) {
     constexpr double width = 520, left = 110, right = width - 14, top = 8, row = 30;

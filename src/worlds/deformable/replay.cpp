@@ -69,9 +69,8 @@ Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, co
         using StateLayout = Layout<process(), any_count>;
         using Estimating = typename decltype(estimator)::template type<StateLayout, double>;
         const auto work = std::make_unique<Workspace<StateLayout, double, Estimating>>();
-        std::vector<Command<double>> commands;
-        if (arm.planner >= 0)
-            commands = choose(std::type_identity<DeformableTrial<StateLayout, double, decltype(estimator)>>{});
+        const std::vector<Command<double>> commands =
+            choose(std::type_identity<DeformableTrial<StateLayout, double, decltype(estimator)>>{});
         run_trial(view, arm.controller, noise, recorder, *work, trajectory.column_values.data(), all_series.data(),
                   commands.empty() ? nullptr : commands.data());
     };
@@ -104,10 +103,8 @@ CountedVariances count(const Problem& problem, const Arm& arm, std::uint64_t roo
                                    [&](std::int64_t trial, auto& observer, double* columns) {
                 const KeyedDraws<double> draws(root_seed, static_cast<std::uint64_t>(trial), view.world.truncate,
                                                view.other);
-                std::vector<Command<double>> commands;
-                if (arm.planner >= 0)
-                    commands = commands_of<DeformableTrial<StateLayout, double, decltype(estimator)>>(
-                        view, arm.planner, root_seed, trial);
+                const auto commands = commands_of<DeformableTrial<StateLayout, double, decltype(estimator)>>(
+                    view, arm.planner, root_seed, trial);
                 run_trial(view, arm.controller, draws, observer, *work, columns, all_series.data(),
                           commands.empty() ? nullptr : commands.data());
             });

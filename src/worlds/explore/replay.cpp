@@ -103,14 +103,6 @@ private:
         std::make_unique<ExploreWorkspace<double, Estimating>>();
 };
 
-/// What a planner of one's own commands in a trial; nothing of other arms.
-template <class Tag>
-std::vector<Command<double>> commands(const ExploreView& view, const ExploreArm& arm, Tag, std::uint64_t root_seed,
-                                      std::int64_t trial) {
-    if (arm.planner < 0) return {};
-    return commands_of<ExploreTrial<double, Tag>>(view, arm.planner, root_seed, trial);
-}
-
 }  // namespace
 
 Trajectory ExploreSimulation::replay(const Scenario& scenario, std::size_t arm, std::uint64_t root_seed,
@@ -126,9 +118,10 @@ Trajectory ExploreSimulation::replay(const Scenario& scenario, std::size_t arm, 
     ExploreRecorder recorder(view, variables, own, trajectory);
     with_estimator<Process::heading>(arms_[arm].estimator, [&](auto estimator) {
         using Estimating = typename decltype(estimator)::template type<ExploreLayout, double>;
+        using Trial = ExploreTrial<double, decltype(estimator)>;
         SingleTrials<Estimating>(view).run(arms_[arm].controller,
-                                           commands(view, arms_[arm], estimator, root_seed, trial), root_seed, trial,
-                                           recorder, trajectory.column_values.data());
+                                           commands_of<Trial>(view, arms_[arm].planner, root_seed, trial), root_seed,
+                                           trial, recorder, trajectory.column_values.data());
     });
     fill_failed(trajectory.columns, trajectory.column_values.data());
     return trajectory;
@@ -144,8 +137,9 @@ CountedVariances ExploreSimulation::counted(std::size_t arm, std::uint64_t root_
         SingleTrials<Estimating> single(view);
         return count_variances(view, sources, single.estimator(), trials, explore_column_count,
                                [&](std::int64_t trial, auto& observer, double* columns) {
-            single.run(arms_[arm].controller, commands(view, arms_[arm], estimator, root_seed, trial), root_seed, trial,
-                       observer, columns);
+            using Trial = ExploreTrial<double, decltype(estimator)>;
+            single.run(arms_[arm].controller, commands_of<Trial>(view, arms_[arm].planner, root_seed, trial), root_seed,
+                       trial, observer, columns);
         });
     });
 }
