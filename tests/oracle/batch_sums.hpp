@@ -27,10 +27,10 @@ public:
         }
         if (evaluated.has_failed()) return;
         RunningSums to = batch_;
-        if (!evaluated.counts()) to = batch_.of_diverged(batch_.owner);
+        if (!evaluated.is_counted()) to = batch_.of_diverged(batch_.owner);
         for (std::size_t f = 0; f < case_.all_series.list.size(); ++f) add_figure(f, place, evaluated, to);
         for (std::size_t b = 0; b < case_.scenario.groups.size(); ++b) add_coverage(b, evaluated, to);
-        if (!evaluated.counts()) return;
+        if (!evaluated.is_counted()) return;
         if (batch_.errors != nullptr) add_products(place, evaluated.products());
     }
 

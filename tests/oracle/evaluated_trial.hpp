@@ -144,7 +144,7 @@ public:
     /// Whether trials keep moments, from the next one on.
     void keep_moments(bool keep) { keeps_moments_ = keep; }
     std::vector<double> moments() const { return moments_.moments(); }
-    bool counts() const { return credence::counts(status_); }
+    bool is_counted() const { return credence::counts(status_); }
     bool has_failed() const { return failed(status_); }
     std::size_t steps_taken() const { return step_; }
 
