@@ -56,9 +56,9 @@ expect 'circle static straight' credence run --set features.path =
 expect '' credence run --set noise.heading = ''
 expect 'ekf' credence show --set arms.estimators = e
 expect 'noise.heading=' credence run --sweep noise.he
-expect 'landmarks' credence run --set scenario.world = l
+expect 'explore' credence run --set scenario.world = e
 expect 'circle' credence run --sweep features.path = c
-keys=$({ "$credence" show; "$credence" show --set scenario.world=landmarks; "$credence" show --set scenario.world=explore; echo "scenario.world = "; } | sed -n 's/^\([a-z]*\.[a-zA-Z_]*\) = .*/\1=/p' | sort -u | tr '\n' ' ')
+keys=$({ "$credence" show; "$credence" show --set scenario.world=explore; echo "scenario.world = "; } | sed -n 's/^\([a-z]*\.[a-zA-Z_]*\) = .*/\1=/p' | sort -u | tr '\n' ' ')
 expect "${keys% }" credence run --set ''
 [ "$(wc -w <<<"$keys")" -gt 30 ] || { echo "show has too few keys: $keys"; status=1; }
 

@@ -112,8 +112,8 @@ def main(arguments=None):
             raise ValueError("invalid --sweep (must be SIGMA=FILE.h5). Write it so.")
         with credence.open(options.file) as study:
             scenario = next(iter(study.scenarios.values()))
-            if scenario.setting("scenario.world") != "landmarks":
-                raise ValueError(f"{options.file} has no landmarks. Give a study of landmarks.ini.")
+            if scenario.setting("scenario.world") != "explore":
+                raise ValueError(f"{options.file} discovers no landmarks. Give a study of landmarks.ini.")
             ratios(scenario, "nees_pose", "pose NEES/3")
             ratios(scenario, "nees_heading", "heading NEES")
             summary(scenario)

@@ -2,7 +2,6 @@
 // The interface between the engine and its targets: the same source, compiled once for each instruction set.
 
 #include <credence/detail/batch.hpp>
-#include "worlds/landmarks/problem.hpp"
 #include "slam/trial/problem.hpp"
 
 #include <cstddef>
@@ -24,8 +23,6 @@ struct Target {
     int lanes = 1;
     SimulateFunction simulate = nullptr;
     std::size_t (*workspace_size)(const ProblemView&, const Arm&) = nullptr;
-    void (*simulate_landmarks)(const LandmarkView&, Estimator, const Batch&) = nullptr;
-    std::size_t (*landmarks_workspace_size)(const LandmarkView&, Estimator) = nullptr;
     void (*simulate_explore)(const ExploreView&, const ExploreArm&, const Batch&) = nullptr;
     std::size_t (*explore_workspace_size)(const ExploreView&, const ExploreArm&) = nullptr;
     void (*simulate_own)(const OwnView&, const Batch&) = nullptr;
@@ -38,17 +35,14 @@ struct Target {
     namespace name {                                   \
     void simulate(const ProblemView&, const Arm&, const Batch&); \
     std::size_t workspace_size(const ProblemView&, const Arm&); \
-    void simulate_landmarks(const LandmarkView&, Estimator, const Batch&); \
-    std::size_t landmarks_workspace_size(const LandmarkView&, Estimator); \
     void simulate_explore(const ExploreView&, const ExploreArm&, const Batch&); \
     std::size_t explore_workspace_size(const ExploreView&, const ExploreArm&); \
     void simulate_own(const OwnView&, const Batch&); \
     std::size_t own_workspace_size(const OwnView&); \
     }
 #define CREDENCE_LIST_TARGET(name, lanes) \
-    Target{#name, lanes, name::simulate, name::workspace_size, name::simulate_landmarks, \
-           name::landmarks_workspace_size, name::simulate_explore, name::explore_workspace_size, name::simulate_own, \
-           name::own_workspace_size}
+    Target{#name, lanes, name::simulate, name::workspace_size, name::simulate_explore, \
+           name::explore_workspace_size, name::simulate_own, name::own_workspace_size}
 
 /// Environment variable that names the target to run, for tests.
 inline constexpr const char* force_target_variable = "CREDENCE_FORCE_TARGET";

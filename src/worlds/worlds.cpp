@@ -4,7 +4,6 @@
 #include "worlds/deformable/deformable.hpp"
 #include <credence/error.hpp>
 #include "worlds/explore/explore.hpp"
-#include "worlds/landmarks/landmarks.hpp"
 #include <credence/text.hpp>
 
 #include <algorithm>
@@ -18,7 +17,6 @@ std::vector<std::unique_ptr<const World>>& registry() {
     static auto& all = *[] {
         auto* known = new std::vector<std::unique_ptr<const World>>;
         known->push_back(deformable_world());
-        known->push_back(landmark_world());
         known->push_back(explore_world());
         return known;
     }();

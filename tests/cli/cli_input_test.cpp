@@ -271,10 +271,10 @@ TEST_CASE("cli: a program of another name says its own in messages, help, comple
 TEST_CASE("cli: show without a scenario names the worlds of the program") {
     const Workplace here;
     CHECK_THAT(here.credence("show").out,
-               Contains("# the world: deformable, landmarks, explore; each has keys of its own, --set "
+               Contains("# the world: deformable, explore; each has keys of its own, --set "
                         "scenario.world=explore shows them\nscenario.world = deformable\n"));
-    const std::string landmarks = here.credence("show --set scenario.world=landmarks").out;
-    CHECK(landmarks.find("scenario.world = landmarks") == landmarks.rfind("scenario.world = "));
+    const std::string explore = here.credence("show --set scenario.world=explore").out;
+    CHECK(explore.find("scenario.world = explore") == explore.rfind("scenario.world = "));
 }
 
 TEST_CASE("cli: a file of another kind is refused with the command that reads it") {

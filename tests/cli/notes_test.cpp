@@ -25,7 +25,7 @@ TEST_CASE("cli: a standard deviation of an angle above 1 rad is noted once, and 
     CHECK(run.err.find("credence run" + note) == run.err.rfind(": note: ") - std::string("credence run").size());
     CHECK(here.credence("run small.ini --trials 20 -o quiet.h5 --quiet").err == "");
     CHECK(here.credence("show small.ini --set noise.heading=1 --set noise.walk=5").err == "");
-    CHECK_THAT(here.credence("show --set scenario.world=landmarks --set noise.heading=2").err,
+    CHECK_THAT(here.credence("show --set scenario.world=explore --set noise.heading=2").err,
                Contains("noise.heading=2 is"));
 }
 

@@ -16,8 +16,8 @@ TEST_CASE("cli: show prints a scenario that reads back to itself") {
     here.write("kf-circle-ranged.ini", shown.out);
     CHECK(here.credence("show kf-circle-ranged.ini").out == shown.out);
     CHECK_THAT(here.credence("show").out, Contains("noise.heading = 0.001"));
-    here.write("defaults.ini", here.credence("show --set scenario.world=landmarks").out);
-    CHECK_THAT(here.credence("show defaults.ini").out, Contains("world = landmarks") && Contains("sides = 60"));
+    here.write("defaults.ini", here.credence("show --set scenario.world=explore").out);
+    CHECK_THAT(here.credence("show defaults.ini").out, Contains("world = explore") && Contains("view = 6.28"));
 }
 
 TEST_CASE("cli: a dry run says what to expect and writes nothing") {

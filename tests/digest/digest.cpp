@@ -7,7 +7,6 @@
 #include "worlds/deformable/deformable.hpp"
 #include <credence/error.hpp>
 #include "worlds/explore/explore.hpp"
-#include "worlds/landmarks/landmarks.hpp"
 #include "worlds/deformable/keys.hpp"
 #include <credence/text.hpp>
 #include <cstdio>
@@ -151,12 +150,11 @@ bool all_agree(const std::vector<Target>& targets) {
         const auto simulation = [&](const Target& target) { return DeformableSimulation(problem, target); };
         agree = agree_on(targets, scenario_of(problem.scenario()), simulation) && agree;
     }
-    const LandmarkSettings landmarks = small_loop();
-    const auto among_landmarks = [&](const Target& target) { return LandmarkSimulation(landmarks, target); };
-    agree = agree_on(targets, scenario_of(landmarks), among_landmarks) && agree;
-    const ExploreSettings rooms = small_rooms();
-    const auto among_walls = [&](const Target& target) { return ExploreSimulation(rooms, target); };
-    return agree_on(targets, scenario_of(rooms), among_walls) && agree;
+    for (const ExploreSettings& settings : {small_loop(), small_rooms()}) {
+        const auto simulation = [&](const Target& target) { return ExploreSimulation(settings, target); };
+        agree = agree_on(targets, scenario_of(settings), simulation) && agree;
+    }
+    return agree;
 }
 
 int run(const std::vector<std::string>& names) {

@@ -1,8 +1,7 @@
 #pragma once
 // The small study of the digest: worlds that together reach every branch of the equations.
 
-#include "worlds/explore/settings.hpp"
-#include "worlds/landmarks/settings.hpp"
+#include "../landmark_loop.hpp"
 
 #include <string>
 #include <utility>
@@ -153,14 +152,11 @@ inline std::vector<World> fragile_worlds() {
 }
 
 /// Landmarks on a loop, walked a little more than once, with every estimator.
-inline LandmarkSettings small_loop() {
-    LandmarkSettings scenario;
-    scenario.name = "landmarks";
-    scenario.poses = 10;
-    scenario.loop = {7, 1};
-    scenario.landmarks = {5, 0.5, 2};
-    scenario.sensor = {1.2, 0.3};
-    return scenario;
+inline ExploreSettings small_loop() {
+    ExploreSettings settings = test::landmark_loop(10, {7, 1, 5, 0.5});
+    settings.prior = 2;
+    settings.sensor.range_max = 1.2;
+    return resolved(settings);
 }
 
 /// Landmarks that are discovered among walls, with every controller.

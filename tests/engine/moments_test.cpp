@@ -66,7 +66,7 @@ void check_moments(const std::string& text) {
 TEST_CASE("moments: those of the lanes are those of the recorded trajectories") {
     check_moments("");
     check_moments("[model]\nprocess = translation\n[filter]\ncovariance = 1.3\n");
-    check_moments("[scenario]\nworld = landmarks\nposes = 30\n");
+    check_moments("[scenario]\nworld = explore\nposes = 30\n[landmarks]\nmap = prior\n");
 }
 
 TEST_CASE("moments: later blocks, and states of more than 64 components, keep none") {

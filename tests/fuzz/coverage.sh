@@ -13,7 +13,7 @@ nice -n 15 cmake --build $folder --target "fuzz_$target" -j "${FUZZ_JOBS:-1}" | 
 
 # Sources without their ending, or folders.
 declare -A readers=(
-  [scenario]="worlds/ini worlds/values worlds/deformable/keys worlds/deformable/settings worlds/landmarks/keys
+  [scenario]="worlds/ini worlds/values worlds/deformable/keys worlds/deformable/settings worlds/explore/keys
     scenario/scenario scenario/common_keys scenario/sweep base/text"
   [noise]="files/trajectory/noise files/hdf5/read files/hdf5/handle"
   [arrays]="record worlds/own/step"

@@ -12,7 +12,7 @@ mkdir -p "$seeds"/{scenario,noise,judge,results}
 
 cp experiments/seed/*.ini "$seeds/scenario/"
 "$program" show >"$seeds/scenario/every-key.ini"
-"$program" show --set scenario.world=landmarks >"$seeds/scenario/landmarks.ini"
+"$program" show --set scenario.world=explore >"$seeds/scenario/explore.ini"
 printf '%s\n' '[noise]' 'walk = 0.2' 'heading = 0.1' '[sweep]' 'of = one' 'at = noise.walk=0.2, noise.heading=0.1' \
   >"$seeds/scenario/swept.ini"
 # Overrides stand behind the text, each after a record separator.
@@ -33,8 +33,8 @@ printf '[scenario]\nname = two\n[model]\nprocess = translation\n' >"$work/two.in
 "$program" run "$work"/{one,two}.ini "${tiny[@]}" --set arms.controllers=greedy --trials 1 -o "$work/scenarios.h5"
 "$program" run "$work/one.ini" "${tiny[@]}" --set arms.controllers=fixed --sweep noise.walk=0.2,0.3 --trials 1 \
   -o "$work/swept.h5"
-printf '[scenario]\nname = three\nworld = landmarks\n[landmarks]\ncount = 1\n' >"$work/three.ini"
-"$program" run "$work/three.ini" --set scenario.poses=2 --set arms.estimators=ekf --trials 1 --quiet -o "$work/landmarks.h5"
+printf '[scenario]\nname = three\nworld = explore\n[features]\ncount = 1\n[landmarks]\nmap = prior\n' >"$work/three.ini"
+"$program" run "$work/three.ini" --set scenario.poses=2 --set arms.controllers=fixed --trials 1 --quiet -o "$work/landmarks.h5"
 /usr/bin/python3 tests/fuzz/make_seeds.py "$work" "$seeds"
 # Journals of runs that could not write their results: a limit on file sizes between the two. Of one block, and of two.
 mkdir -p "$seeds/journal"

@@ -428,7 +428,10 @@ def frontier(s, x, viewed, neighbours):
 
 
 def along(s):
-    """The controls along the waypoints, from pose k - 1 to k for k = 1 ... K - 1."""
+    """The controls of the fixed path, from pose k - 1 to k for k = 1 ... K - 1."""
+    if s.get("control.path") != "waypoints":
+        turn = float(s.get("robot.turn")) if s.get("control.path") == "circle" else 0.0
+        return [(turn, s.step * np.array([math.cos(turn), math.sin(turn)]))] * (s.K - 1)
     def place(length):
         here = np.zeros(2)
         for there in s.waypoints:
@@ -512,7 +515,7 @@ def random_scenario(rng):
     placement = pick("given", "box", "ring")
     lines = {"scenario": {"world": "explore", "name": "random", "poses": int(rng.integers(8, 20))},
              "walls": {"segments": ", ".join(walls) or "none"},
-             "robot": {"radius": pick(0.1, 0.3), "step": pick(0.5, 1)},
+             "robot": {"radius": pick(0.1, 0.3), "step": pick(0.5, 1), "turn": pick(0.3, -0.6)},
              "features": {"placement": placement, "extent": 8, "radius_min": 1, "radius_max": 4},
              "landmarks": {"map": pick("none", "none", "prior", "known"), "prior": pick(1, 5)},
              "sensor": {"range_max": pick(2, 4), "range_min": pick(0, 0.3), "view": pick(1.5, 4, 6.3),
@@ -523,7 +526,7 @@ def random_scenario(rng):
              "map": {"box": "-4 -3, 4 4", "cell": pick(0.8, 1)},
              "filter": {"heading": pick(1, 1.2), "measurement": pick(1, 0.9), "covariance": pick(1, 1.5),
                         "gate": pick(1, 1, 0.99)},
-             "control": {"waypoints": "2 0, 2 2, -2 2"},
+             "control": {"waypoints": "2 0, 2 2, -2 2", "path": pick("waypoints", "waypoints", "circle", "straight")},
              "planner": {"criterion": pick("trace", "trace", "pose_trace", "features_trace", "log_det", "pose_log_det",
                                            "max_eigenvalue"),
                          "heading_weight": pick(1, 3), "speeds": pick(1, 2), "turns": pick("0", "-0.8, 0, 0.9"),

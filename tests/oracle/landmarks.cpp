@@ -21,18 +21,19 @@ Index place(std::size_t i) { return pose_size + 2 * static_cast<Index>(i); }
 /// The true loop, in closed form: the corners of a polygon about its centre.
 class Loop {
 public:
-    explicit Loop(const LandmarkSettings& scenario)
+    explicit Loop(const ExploreSettings& scenario)
         : s_(scenario),
-          turn_(2 * std::numbers::pi / scenario.loop.sides),
-          radius_(scenario.loop.step / 2 / std::sin(turn_ / 2)),
-          centre_(scenario.loop.step / 2, radius_ * std::cos(turn_ / 2)) {}
+          turn_(scenario.features.turn),
+          radius_(scenario.features.step / 2 / std::sin(turn_ / 2)),
+          centre_(-scenario.features.step / 2, radius_ * std::cos(turn_ / 2)) {}
 
     double turn() const { return turn_; }
     double heading(int k) const { return k * turn_; }
-    Vector2d position(int k) const { return centre_ + radius_ * about(heading(k) - turn_ / 2 - std::numbers::pi / 2); }
+    Vector2d position(int k) const { return centre_ + radius_ * about(heading(k) + turn_ / 2 - std::numbers::pi / 2); }
+    Vector2d move() const { return s_.features.step * about(turn_); }
     Vector2d landmark(int j) const {
-        const double offset = j % 2 == 0 ? s_.landmarks.offset : -s_.landmarks.offset;
-        return centre_ + (radius_ + offset) * about(2 * std::numbers::pi * j / s_.landmarks.count);
+        const Point& place = s_.features.positions[static_cast<std::size_t>(j)];
+        return {place.x, place.y};
     }
     bool sees(int k, int j) const { return (landmark(j) - position(k)).norm() <= s_.sensor.range_max; }
     Vector2d measured(int k, int j, const Noise& noise) const {
@@ -42,7 +43,7 @@ public:
 
 private:
     static Vector2d about(double angle) { return {std::cos(angle), std::sin(angle)}; }
-    const LandmarkSettings& s_;
+    const ExploreSettings& s_;
     double turn_, radius_;
     Vector2d centre_;
 };
@@ -50,7 +51,7 @@ private:
 /// One estimator on its way: mean and covariance of the Euclidean error, and what it remembers.
 class Filter {
 public:
-    Filter(const LandmarkSettings& scenario, Estimator estimator, const Noise& noise)
+    Filter(const ExploreSettings& scenario, Estimator estimator, const Noise& noise)
         : s_(scenario), loop_(scenario), estimator_(estimator), noise_(noise) {
         step_.estimate = {VectorXd::Zero(pose_size), MatrixXd::Zero(pose_size, pose_size)};
         see_new(0);
@@ -87,7 +88,7 @@ private:
     void predict(int k) {
         const double turn = loop_.turn() - s_.noise.heading * noise_.normal(Source::odometry_heading, k, 0)[0];
         const Vector2d move =
-            Vector2d(s_.loop.step, 0) - s_.noise.odometry * noise_.normal(Source::odometry_position, k, 0);
+            loop_.move() - s_.noise.odometry * noise_.normal(Source::odometry_position, k, 0);
         const VectorXd before = x();
         x().segment<2>(r) += rotation(before[theta]) * move;
         x()[theta] += turn;
@@ -166,7 +167,7 @@ private:
     }
 
     void see_new(int k) {
-        for (int j = 0; j < s_.landmarks.count; ++j) {
+        for (int j = 0; j < feature_count(s_); ++j) {
             const auto& known = step_.landmarks;
             if (std::find(known.begin(), known.end(), j) == known.end() && loop_.sees(k, j)) initialise(k, j);
         }
@@ -197,7 +198,7 @@ private:
         first_.push_back(landmark);
     }
 
-    const LandmarkSettings& s_;
+    const ExploreSettings& s_;
     Loop loop_;
     Estimator estimator_;
     const Noise& noise_;
@@ -208,7 +209,7 @@ private:
 
 }  // namespace
 
-std::vector<LandmarkStep> landmark_trial(const LandmarkSettings& scenario, Estimator estimator, const Noise& noise) {
+std::vector<LandmarkStep> landmark_trial(const ExploreSettings& scenario, Estimator estimator, const Noise& noise) {
     Filter filter(scenario, estimator, noise);
     std::vector<LandmarkStep> steps{filter.step(0)};
     for (int k = 1; k < scenario.poses; ++k) {

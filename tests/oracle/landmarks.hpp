@@ -1,10 +1,10 @@
 #pragma once
-// The oracle of the world of landmarks: one trial with dense matrices, a state that grows as landmarks come into sight,
+// The oracle of the loop among landmarks: one trial with dense matrices, a state that grows as landmarks come into sight,
 // and every estimator as its paper writes it.
 
 #include "estimators.hpp"
 
-#include "worlds/landmarks/settings.hpp"
+#include "worlds/explore/settings.hpp"
 
 namespace credence::oracle {
 
@@ -18,7 +18,7 @@ struct LandmarkStep {
     Eigen::VectorXd last_move;       ///< what the last pass of the iterated update moved
 };
 
-/// One trial, by pose.
-std::vector<LandmarkStep> landmark_trial(const LandmarkSettings& scenario, Estimator estimator, const Noise& noise);
+/// One trial along the circle of control.path, by pose; the motion is known, and what is reported of it is not.
+std::vector<LandmarkStep> landmark_trial(const ExploreSettings& scenario, Estimator estimator, const Noise& noise);
 
 }  // namespace credence::oracle

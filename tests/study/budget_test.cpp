@@ -1,11 +1,11 @@
 // The budget of an error by its sources: against the study itself, the closed form of a linear filter, and P.
 
 #include "catch.hpp"
+#include "landmark_loop.hpp"
 #include "matched.hpp"
 #include "study/budget.hpp"
 #include "support.hpp"
 #include "worlds/explore/explore.hpp"
-#include "worlds/landmarks/landmarks.hpp"
 
 #include <credence/detail/draws.hpp>
 #include <credence/text.hpp>
@@ -121,10 +121,7 @@ TEST_CASE("budget: what P counts for the sources adds up to P, for every estimat
     settings.poses = 8;
     settings.planner.speeds = 1;
     settings.budget.errors = KeptErrors::mean;
-    LandmarkSettings landmarks;
-    landmarks.poses = 30;
-    landmarks.landmarks.count = 8;
-    landmarks.loop.sides = 20;
+    ExploreSettings landmarks = landmark_loop(30, {20, 1, 8, 1});
     landmarks.budget.errors = KeptErrors::mean;
     ExploreSettings explore;
     explore.poses = 12;
@@ -140,7 +137,7 @@ TEST_CASE("budget: what P counts for the sources adds up to P, for every estimat
     ExploreSettings with_prior = explore, known = explore;
     with_prior.map = LandmarkMap::prior;
     known.map = LandmarkMap::known;
-    for (const Scenario& scenario : {scenario_of(settings), scenario_of(landmarks), scenario_of(resolved(explore)),
+    for (const Scenario& scenario : {scenario_of(settings), scenario_of(resolved(landmarks)), scenario_of(resolved(explore)),
                                      scenario_of(resolved(with_prior)), scenario_of(resolved(known))})
         for (std::size_t arm = 0; arm < scenario.arms.size(); ++arm) {
             CAPTURE(scenario.arms[arm]);

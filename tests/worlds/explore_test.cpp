@@ -85,9 +85,10 @@ TEST_CASE("explore: nonsense is refused with its line") {
     CHECK_THAT(refusal_of("[map]\ncell = 1e-3\n"), Contains("such cells"));
     CHECK_THAT(refusal_of("[sensor]\nview = 0\n"), Contains("must be above 0"));
     CHECK_THAT(refusal_of("[control]\nwaypoints = none\n"), Contains("there are no waypoints for fixed"));
+    CHECK(refusal_of("[control]\npath = circle\nwaypoints = none\n").empty());
     CHECK_THAT(refusal_of("[arms]\ncontrollers = greedy, greedy\n"), Contains("greedy is given twice"));
     CHECK_THAT(refusal_of("[arms]\ncontrollers = nearest\n"), Contains("not one of its choices"));
-    CHECK_THAT(refusal_of("[arms]\nestimators = kf\n"), Contains("kf is not for"));
+    CHECK_THAT(refusal_of("[arms]\nestimators = kf\n"), Contains("kf has no heading"));
     CHECK_THAT(refusal_of("[landmarks]\nprior = 1e-150\n"), Contains("singular"));
     CHECK(refusal_of("[arms]\ncontrollers = greedy\n[control]\nwaypoints = none\n").empty());
 }

@@ -1,12 +1,13 @@
-// The world of landmarks over a thousand trials, against the tables of an independent implementation (batched numpy,
+// The loop among landmarks over a thousand trials, against the tables of an independent implementation (batched numpy,
 // its own draws, N = 1000; docs/theory/estimators.md, Landmarks on a loop).
 
 #include <credence/detail/block.hpp>
-#include "worlds/landmarks/landmarks.hpp"
+#include "worlds/explore/explore.hpp"
 
 #include <cmath>
 
 #include "catch.hpp"
+#include "landmark_loop.hpp"
 #include "support.hpp"
 
 namespace credence::test::landmark_figures_long_test {
@@ -20,15 +21,15 @@ struct Mean {
 /// Sums over the blocks of a study of one scenario.
 class Totals {
 public:
-    Totals(const LandmarkSettings& scenario, int blocks)
-        : figures_(landmark_series(scenario)), steps_(scenario.poses - 1) {
-        const LandmarkSimulation simulation(scenario);
-        const std::size_t arms = scenario.estimators.size();
+    Totals(const ExploreSettings& scenario, int blocks)
+        : figures_(explore_series(scenario)), steps_(scenario.poses - 1) {
+        const ExploreSimulation simulation(scenario);
+        const std::size_t arms = scenario.arms.estimators->size();
         sums_.resize(arms);
         squares_.resize(arms);
         run_squares_.resize(arms);
         for (int b = 0; b < blocks; ++b) {
-            const Block block = run_block(simulation, trial_columns(state_of(scenario)), arms, 3, b, block_size);
+            const Block block = run_block(simulation, explore_columns(scenario), arms, 3, b, block_size);
             trials_ += block_size;
             for (std::size_t a = 0; a < arms; ++a) {
                 REQUIRE(block.arms[a].counted == block_size);
@@ -86,7 +87,7 @@ const std::vector<int> tenths{60, 120, 180, 240, 300, 360, 420, 480, 540, 600};
 }  // namespace
 
 TEST_CASE("landmarks: every table of the classical loop is what an independent implementation found", "[long]") {
-    const Totals totals(LandmarkSettings(), 4);  // arms: ekf, ideal, fej, riekf, iekf
+    const Totals totals(resolved(landmark_loop(601)), 4);  // arms: ekf, ideal, fej, riekf, iekf
     const double pose[5][10]{{1.48, 1.82, 1.97, 2.08, 2.18, 2.25, 2.32, 2.39, 2.30, 2.41},
                              {1.02, 1.01, 1.04, 0.98, 1.04, 1.01, 1.03, 1.07, 1.02, 1.04},
                              {1.04, 1.04, 1.07, 1.00, 1.08, 1.04, 1.04, 1.10, 1.05, 1.07},
@@ -140,9 +141,9 @@ TEST_CASE("landmarks: under less heading noise the extended Kalman filter loses 
     };
     for (const auto& [sigma, ekf, riekf] : {Row{0.001, 0.99, 0.96}, Row{0.01, 1.29, 1.02}, Row{0.02, 1.77, 1.01}}) {
         CAPTURE(sigma);
-        LandmarkSettings scenario;
+        ExploreSettings scenario = resolved(landmark_loop(601));
         scenario.noise.heading = sigma;
-        scenario.estimators = {Estimator::ekf, Estimator::riekf};
+        scenario.arms.estimators = {Estimator::ekf, Estimator::riekf};
         const Totals totals(scenario, 2);
         check(totals.at(0, "nees_heading", 600), ekf, 0.01);
         check(totals.at(1, "nees_heading", 600), riekf, 0.01);

@@ -1,5 +1,5 @@
 // Trials among landmarks, under every estimator, and their images in another unit of length and with other numbers for
-// the landmarks. The order of the landmarks is no key of a scenario; the tables of its problem are permuted.
+// the landmarks. 
 
 #include "catch.hpp"
 #include "landmark_run.hpp"
@@ -9,29 +9,25 @@ namespace credence::test::landmark_metamorphic_test {
 
 namespace {
 
-LandmarkSettings in_unit(LandmarkSettings scenario, double factor) {
-    for (double* length : {&scenario.loop.step, &scenario.landmarks.offset, &scenario.landmarks.prior,
-                           &scenario.sensor.range_max, &scenario.sensor.sigma, &scenario.noise.odometry})
+ExploreSettings in_unit(ExploreSettings scenario, double factor) {
+    for (double* length : {&scenario.features.step, &scenario.prior, &scenario.sensor.range_max, &scenario.sensor.sigma,
+                           &scenario.noise.odometry, &scenario.radius, &scenario.cell})
         *length *= factor;
+    for (std::vector<Point>* points : {&scenario.features.positions, &scenario.box})
+        for (Point& point : *points) point = {factor * point.x, factor * point.y};
     return scenario;
 }
 
-/// A problem whose landmarks have other numbers.
+/// A scenario whose landmarks have other numbers.
 struct Permuted {
     std::vector<int> before;  ///< [M] by its number, its number before
-    std::vector<Point> landmark;
-    std::vector<int> first_pose;
-    LandmarkView view;
+    ExploreSettings scenario;
 
-    Permuted(const LandmarkView& of, unsigned seed) : before(static_cast<std::size_t>(of.features)), view(of) {
+    Permuted(const ExploreSettings& of, unsigned seed) : before(of.features.positions.size()), scenario(of) {
         std::iota(before.begin(), before.end(), 0);
         std::shuffle(before.begin(), before.end(), std::mt19937(seed));
-        for (const int j : before) {
-            landmark.push_back(of.world.landmark[j]);
-            first_pose.push_back(of.world.first_pose[j]);
-        }
-        view.world.landmark = landmark.data();
-        view.world.first_pose = first_pose.data();
+        for (std::size_t j = 0; j < before.size(); ++j)
+            scenario.features.positions[j] = of.features.positions[static_cast<std::size_t>(before[j])];
     }
 
     AnyNoise noise(const AnyNoise& noise) const {
@@ -50,10 +46,10 @@ RunStep step_of(const Held& held) {
 }
 
 /// The series that have no unit and no landmark of their own.
-std::vector<Eigen::Index> compared_series(const LandmarkSettings& scenario) {
+std::vector<Eigen::Index> compared_series(const ExploreSettings& scenario) {
     const std::vector<std::string> names{"nees", "nees_pose", "nees_features", "nis", "nis_rows", "unseen_features"};
     std::vector<Eigen::Index> rows;
-    const std::vector<Series> declared = landmark_series(scenario);
+    const std::vector<Series> declared = explore_series(scenario);
     for (std::size_t i = 0; i < declared.size(); ++i)
         if (std::find(names.begin(), names.end(), declared[i].name) != names.end())
             rows.push_back(static_cast<Eigen::Index>(i));
@@ -61,7 +57,7 @@ std::vector<Eigen::Index> compared_series(const LandmarkSettings& scenario) {
 }
 
 /// Greatest difference of a trial's image from the trial, of which `map` makes the states of the image.
-double difference(const LandmarkSettings& scenario, const LandmarkRun& run, const LandmarkRun& other,
+double difference(const ExploreSettings& scenario, const LandmarkRun& run, const LandmarkRun& other,
                   const MatrixXd& map) {
     double greatest = 0;
     for (std::size_t k = 1; k < run.steps.size(); ++k)
@@ -74,29 +70,27 @@ double difference(const LandmarkSettings& scenario, const LandmarkRun& run, cons
     return greatest;
 }
 
-MatrixXd scaling(const LandmarkSettings& scenario, double factor) {
-    MatrixXd map = factor * MatrixXd::Identity(3 + 2 * scenario.landmarks.count, 3 + 2 * scenario.landmarks.count);
+MatrixXd scaling(const ExploreSettings& scenario, double factor) {
+    MatrixXd map = factor * MatrixXd::Identity(state_size(scenario), state_size(scenario));
     map(0, 0) = 1;
     return map;
 }
 
-/// check(scenario, view, run, estimator, noise) on trials of two loops under every estimator.
+/// check(scenario, run, estimator, noise) on trials of two loops under every estimator.
 template <class Check>
 void each_trial(int trials, const Check& check) {
-    for (const LandmarkSettings& scenario : {classical(70), other()}) {
-        const LandmarkProblem problem(scenario);
+    for (const ExploreSettings& scenario : {classical(70), other()})
         for (const Estimator estimator : all_estimators)
             for (int trial = 0; trial < trials; ++trial) {
                 const AnyNoise noise = noise_of(static_cast<std::uint64_t>(trial));
                 CAPTURE(scenario.poses, estimator, trial);
-                check(scenario, problem.view(), run_landmarks(problem.view(), estimator, noise), estimator, noise);
+                check(scenario, run_landmarks(scenario, estimator, noise), estimator, noise);
             }
-    }
 }
 
-/// What makes the states of the permuted problem [n, n].
+/// What makes the states of the permuted scenario [n, n].
 MatrixXd permutation(const Permuted& permuted) {
-    MatrixXd map = MatrixXd::Zero(permuted.view.state_size, permuted.view.state_size);
+    MatrixXd map = MatrixXd::Zero(state_size(permuted.scenario), state_size(permuted.scenario));
     map.topLeftCorner<3, 3>().setIdentity();
     for (std::size_t j = 0; j < permuted.before.size(); ++j)
         map.block<2, 2>(3 + 2 * static_cast<int>(j), 3 + 2 * permuted.before[j]).setIdentity();
@@ -104,14 +98,13 @@ MatrixXd permutation(const Permuted& permuted) {
 }
 
 void compare_to_rounding(int trials) {
-    each_trial(trials, [](const auto& scenario, const auto& view, const auto& run, auto estimator, const auto& noise) {
+    each_trial(trials, [](const auto& scenario, const auto& run, auto estimator, const auto& noise) {
         constexpr double rounding = 1e-16 * 1e3 * 70;  // times the condition of S, over 70 poses
-        const Permuted permuted(view, 3);
-        const LandmarkRun other = run_landmarks(permuted.view, estimator, permuted.noise(noise));
+        const Permuted permuted(scenario, 3);
+        const LandmarkRun other = run_landmarks(permuted.scenario, estimator, permuted.noise(noise));
         CHECK(difference(scenario, run, other, permutation(permuted)) < rounding);
         for (const double factor : {0.1, 1e3}) {
-            const LandmarkProblem image(in_unit(scenario, factor));
-            const LandmarkRun scaled = run_landmarks(image.view(), estimator, noise);
+            const LandmarkRun scaled = run_landmarks(in_unit(scenario, factor), estimator, noise);
             CHECK(difference(scenario, run, scaled, scaling(scenario, factor)) < rounding);
         }
     });
@@ -120,10 +113,9 @@ void compare_to_rounding(int trials) {
 }  // namespace
 
 TEST_CASE("landmarks metamorphic: in a unit a power of two apart a trial has the same bits") {
-    each_trial(1, [](const auto& scenario, const auto&, const auto& run, Estimator estimator, const auto& noise) {
-        const LandmarkProblem image(in_unit(scenario, 0x1p-7));
-        REQUIRE(difference(scenario, run, run_landmarks(image.view(), estimator, noise), scaling(scenario, 0x1p-7)) ==
-                0);
+    each_trial(1, [](const auto& scenario, const auto& run, Estimator estimator, const auto& noise) {
+        const LandmarkRun image = run_landmarks(in_unit(scenario, 0x1p-7), estimator, noise);
+        REQUIRE(difference(scenario, run, image, scaling(scenario, 0x1p-7)) == 0);
     });
 }
 

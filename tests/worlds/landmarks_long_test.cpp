@@ -1,10 +1,12 @@
-// The world of landmarks [docs/estimators.md]: its truth, first sight, and every estimator in it against dense matrices
-// on a state that grows.
+// The loop among landmarks [docs/estimators.md]: its truth, first sight, and every estimator in it against dense
+// matrices on a state that grows.
 
 #include "landmark_run.hpp"
 
 #include "catch.hpp"
 #include "oracle/landmarks.hpp"
+
+#include <credence/ini.hpp>
 
 namespace credence::test::landmarks_long_test {
 
@@ -20,10 +22,10 @@ std::vector<int> rows_of(const std::vector<int>& landmarks) {
 }  // namespace
 
 TEST_CASE("landmarks: every estimator is its paper's filter on a state that grows") {
-    for (const LandmarkSettings& scenario : {classical(70), other()})
+    for (const ExploreSettings& scenario : {classical(70), other()})
         for (const Estimator estimator : all_estimators)
             for (const std::uint64_t trial : {0u, 1u}) {
-                CAPTURE(estimator, trial, scenario.landmarks.count);
+                CAPTURE(estimator, trial, feature_count(scenario));
                 const LandmarkRun run = run_landmarks(scenario, estimator, noise_of(trial));
                 const auto expected = oracle::landmark_trial(scenario, estimator, for_oracle(noise_of(trial)));
                 REQUIRE(run.steps.size() == expected.size());
@@ -55,12 +57,33 @@ TEST_CASE("landmarks: every estimator is its paper's filter on a state that grow
             }
 }
 
+TEST_CASE("landmarks: the scenario of the study is the classical loop") {
+    const Scenario study = read_scenario(CREDENCE_SOURCE "/experiments/estimators/landmarks.ini"),
+                   expected = scenario_of(classical(601));
+    REQUIRE(study.settings.size() == expected.settings.size());
+    for (std::size_t i = 0; i < expected.settings.size(); ++i) {
+        const auto& [key, value, later] = expected.settings[i];
+        CAPTURE(key);
+        if (key == "scenario.title") continue;
+        if (key != "features.positions") {
+            CHECK(study.settings[i].value == value);
+            continue;
+        }
+        std::istringstream written(study.settings[i].value), exact(value);
+        double a = 0, b = 0;
+        for (char comma = 0; exact >> b; exact.peek() == ',' && exact >> comma && written >> comma) {
+            REQUIRE(written >> a);
+            CHECK(a == Approx(b).margin(0.6e-4));  // written to four decimals
+        }
+    }
+}
+
 TEST_CASE("landmarks: where one is first seen, and what is believed of it before") {
-    LandmarkSettings scenario = other();
+    ExploreSettings scenario = other();
     scenario.poses = 12;  // not once around
     const LandmarkRun run = run_landmarks(scenario, Estimator::ekf, noise_of(3));
     int never = 0, at_start = 0;
-    for (int j = 0; j < scenario.landmarks.count; ++j) {
+    for (int j = 0; j < feature_count(scenario); ++j) {
         const int first = run.first_pose[static_cast<std::size_t>(j)], f = 3 + 2 * j;
         const auto last_unseen = static_cast<std::size_t>(std::min(first, scenario.poses) - 1);
         CAPTURE(j, first);
@@ -79,13 +102,13 @@ TEST_CASE("landmarks: where one is first seen, and what is believed of it before
     }
     CHECK(at_start >= 1);
     CHECK(never >= 1);
-    CHECK(never + at_start < scenario.landmarks.count);
+    CHECK(never + at_start < feature_count(scenario));
 }
 
 TEST_CASE("landmarks: nothing is left of what was believed before first sight") {
-    LandmarkSettings near = classical(66), far = near;
-    near.landmarks.prior = 0.5;
-    far.landmarks.prior = 1000;
+    ExploreSettings near = classical(66), far = near;
+    near.prior = 0.5;
+    far.prior = 1000;
     for (const Estimator estimator : all_estimators) {
         CAPTURE(estimator);
         const LandmarkRun a = run_landmarks(near, estimator, noise_of(0)),
@@ -101,37 +124,37 @@ TEST_CASE("landmarks: nothing is left of what was believed before first sight") 
 }
 
 TEST_CASE("landmarks: series count rows, landmarks out of sight and first sights") {
-    const LandmarkSettings scenario = classical(30);
+    const ExploreSettings scenario = classical(30);
     const LandmarkRun run = run_landmarks(scenario, Estimator::ekf, noise_of(0));
     double unseen = 0;
     for (int k = 1; k < scenario.poses; ++k) {
         const Held& now = run.steps[static_cast<std::size_t>(k)];
         int seen = 0, known = 0;
-        for (int j = 0; j < scenario.landmarks.count; ++j) {
+        for (int j = 0; j < feature_count(scenario); ++j) {
             const bool sees =
                 (now.truth.segment<2>(3 + 2 * j) - now.truth.segment<2>(1)).norm() <= scenario.sensor.range_max;
             seen += sees;
             known += sees && run.first_pose[static_cast<std::size_t>(j)] < k;
         }
         CHECK(run.figure(scenario, "nis_rows", k) == 2 * known);
-        CHECK(run.figure(scenario, "unseen_features", k) == scenario.landmarks.count - seen);
-        unseen += scenario.landmarks.count - seen;
+        CHECK(run.figure(scenario, "unseen_features", k) == feature_count(scenario) - seen);
+        unseen += feature_count(scenario) - seen;
     }
     CHECK(run.columns[column_unseen] == unseen);
-    CHECK(run.columns[column_status] == 0);
+    CHECK(run.columns[explore_column_count - 2] == 0);
 }
 
 TEST_CASE("landmarks: first sight moves a landmark with the pose as its derivatives say") {
-    const Heading layout(3);
+    const ExploreLayout layout(3, 8);
     const Sample sample(layout.size(), 5);
     const Sighting<double> sighting{true, {1.2, -0.7}, 0.3};
     const auto landmark = [&](const VectorXd& x) -> Eigen::Vector2d {
         return x.segment<2>(1) + oracle::rotation(x[0]) * Eigen::Vector2d(1.2, -0.7);
     };
     FilterParameters filter;
-    HeadingBelief belief = belief_of<Heading>(sample.x, sample.P);
+    HeadingBelief belief = belief_of<ExploreLayout>(sample.x, sample.P);
     HeadingTruth truth;
-    KalmanFilter<Heading, double>().initialise(belief, filter, layout, 1, sighting, truth);
+    KalmanFilter<ExploreLayout, double>().initialise(belief, filter, layout, 1, sighting, truth);
     MatrixXd grow = MatrixXd::Identity(layout.size(), layout.size());
     grow.middleRows<2>(5).setZero();
     for (int i = 0; i < 3; ++i) {
@@ -151,15 +174,15 @@ namespace {
 /// own first sights and, where it turns its covariance after the update, by that; and notes the most that its own rows
 /// say of it [docs/estimators.md, Landmarks on a loop]: 0 for a filter that does not believe to learn what it cannot.
 template <template <class, class> class Type>
-struct Watched : Type<Heading, double> {
-    using Base = Type<Heading, double>;
+struct Watched : Type<ExploreLayout, double> {
+    using Base = Type<ExploreLayout, double>;
     static inline double most = 0;
 
-    void start(const Heading& layout, const HeadingBelief& belief, const HeadingTruth& truth) {
+    void start(const ExploreLayout& layout, const HeadingBelief& belief, const HeadingTruth& truth) {
         Base::start(layout, belief, truth);
         turn_ = VectorXd::Unit(layout.size(), 0);
     }
-    void predict(HeadingBelief& belief, const FilterParameters& filter, const Heading& layout,
+    void predict(HeadingBelief& belief, const FilterParameters& filter, const ExploreLayout& layout,
                  const Command<double>& command, const HeadingTruth& truth, int k) {
         FilterParameters quiet = filter;
         quiet.variance_heading = quiet.variance_odometry = 0;
@@ -168,9 +191,9 @@ struct Watched : Type<Heading, double> {
         Base::predict(belief, filter, layout, command, truth, k);
     }
     template <class EdgeMeasurement, class Linearisation>
-    void update(HeadingBelief& belief, const FilterParameters& filter, const Heading& layout,
+    void update(HeadingBelief& belief, const FilterParameters& filter, const ExploreLayout& layout,
                 const Sighting<double>* sightings, const EdgeMeasurement& edge, const Linearisation& linearised,
-                Update<double, Heading::capacity>& update) {
+                Update<double, ExploreLayout::capacity>& update) {
         for (int j = 0; j < layout.features(); ++j) {
             if (!sightings[j].seen) continue;
             const Vector2<double> said = linearised(j, sightings[j]).rows([&](int i) { return turn_[i]; });
@@ -178,12 +201,12 @@ struct Watched : Type<Heading, double> {
         }
         const VectorXd before = mean_of(belief, layout.size());
         Base::update(belief, filter, layout, sightings, edge, linearised, update);
-        if (!std::is_same_v<Base, RightInvariantFilter<Heading, double>>) return;
+        if (!std::is_same_v<Base, RightInvariantFilter<ExploreLayout, double>>) return;
         const VectorXd shift = mean_of(belief, layout.size()) - before;
         carry(belief, layout,
               [&](Base&, HeadingBelief& turned) { turn_covariance(turned.covariance, layout, shift.data()); });
     }
-    void initialise(HeadingBelief& belief, const FilterParameters& filter, const Heading& layout, int j,
+    void initialise(HeadingBelief& belief, const FilterParameters& filter, const ExploreLayout& layout, int j,
                     const Sighting<double>& sighting, const HeadingTruth& truth) {
         Sighting<double> exact = sighting;
         exact.sigma = 0;
@@ -195,8 +218,8 @@ struct Watched : Type<Heading, double> {
 private:
     /// Puts the covariance N N' through what a copy of the filter does: its first row is N again, as N_theta is 1.
     template <class Does>
-    void carry(const HeadingBelief& belief, const Heading& layout, const Does& does) {
-        HeadingBelief turned = belief_of<Heading>(mean_of(belief, layout.size()), turn_ * turn_.transpose());
+    void carry(const HeadingBelief& belief, const ExploreLayout& layout, const Does& does) {
+        HeadingBelief turned = belief_of<ExploreLayout>(mean_of(belief, layout.size()), turn_ * turn_.transpose());
         Base own = *this;
         does(own, turned);
         turn_ = dense(turned, layout.size()).col(0);
@@ -207,7 +230,7 @@ private:
 template <template <class, class> class Type>
 double learned_of_the_turn(std::uint64_t trial) {
     Watched<Type>::most = 0;
-    run_with<Watched<Type>>(LandmarkProblem(classical(121)).view(), noise_of(trial));
+    run_with<Watched<Type>>(classical(121), noise_of(trial));
     return Watched<Type>::most;
 }
 
@@ -224,7 +247,7 @@ TEST_CASE("landmarks: who believes to observe the turn of everything, and who do
 }
 
 TEST_CASE("landmarks: an iterated update that has not come to rest is counted") {
-    LandmarkSettings scenario = classical(121);
+    ExploreSettings scenario = classical(121);
     scenario.noise.heading = 0.2;  // so that there are some
     int unsettled = 0, settled = 0;
     for (const std::uint64_t trial : {0u, 1u, 2u, 3u}) {

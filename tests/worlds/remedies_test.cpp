@@ -18,7 +18,7 @@ struct Refused {
 
 const Overrides no_heading{{"model.process", "translation"}}, ranged{{"sensor.noise", "ranged"}},
     one_feature{{"features.positions", "1 1"}}, two_features{{"features.positions", "1 1, 2 2"}},
-    landmarks{{"scenario.world", "landmarks"}};
+    explored{{"scenario.world", "explore"}};
 
 std::string read(const Overrides& settings) {
     return test::refusal([&] { read_scenario_text("", "test", "mine", settings); });
@@ -114,13 +114,12 @@ TEST_CASE("scenario: what a refusal says to do leads to a scenario that is accep
         {{{"arms.controllers", "greedy, greedy"}}, {{"arms.controllers", "greedy"}}, "Name each once."},
         {{{"published.unseen", "greedy.ekv 3"}}, {{"published.unseen", "greedy.ekf 3"}}, "Did you mean greedy.ekf? "},
         {{{"scenario.name", "run"}}, {{"scenario.name", "mine"}}, "Give another text."},
-        {{{"scenario.world", "landmark"}}, landmarks, "Did you mean landmarks? "},
-        {landmarks + Overrides{{"noise.heading", "1e-120"}},
-         {{"noise.heading", "1.1e-100"}},
+        {{{"scenario.world", "explor"}}, explored, "Did you mean explore? "},
+        {explored + Overrides{{"landmarks.prior", "1e-120"}},
+         {{"landmarks.prior", "1.1e-100"}},
          "deviation above 1e-100."},
-        {landmarks + Overrides{{"loop.step", "1e-3"}}, {{"landmarks.offset", "1e-3"}}, "Give less, or "},
-        {landmarks + Overrides{{"loop.step", "1e-3"}}, {{"loop.step", "1"}}, "or a larger loop."},
-        {landmarks + Overrides{{"arms.estimators", "kf"}},
+        {explored + Overrides{{"control.waypoints", "none"}}, {{"control.path", "circle"}}, "or another control.path."},
+        {explored + Overrides{{"arms.estimators", "kf"}},
          {{"arms.estimators", "iekf"}},
          "Give some of ekf, ideal, fej, riekf, iekf."},
     };
@@ -167,7 +166,7 @@ TEST_CASE("scenario: other words of the field lead to the noise that they name, 
         CHECK((key + (" " + meant(key))) == key + std::string(" sensor.sigma"));
     for (const char* key : {"noise.process", "process.noise", "noise.motion", "Q"})
         CHECK((key + (" " + meant(key))) == key + std::string(" noise.heading or noise.odometry or noise.walk"));
-    CHECK(meant("noise.process", landmarks) == "noise.heading or noise.odometry");
+    CHECK(meant("noise.process", explored) == "noise.heading or noise.odometry");
     CHECK(meant("noise.initial") == "noise.initial_heading or noise.initial_position");
     CHECK(meant("filter.measurment") == "filter.measurement");
     CHECK(meant("fliter.measurement") == "filter.measurement");

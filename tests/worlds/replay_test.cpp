@@ -1,8 +1,10 @@
 // Trials of every world, replayed: the engine's bits, and variables from which its NEES and NIS follow.
 
 #include "catch.hpp"
+#include "landmark_loop.hpp"
 #include "slam_steps.hpp"
 #include "study_support.hpp"
+#include "worlds/explore/explore.hpp"
 
 #include <credence/ini.hpp>
 #include <credence/own_world.hpp>
@@ -72,7 +74,7 @@ Scenario own(const std::string& world) {
 }  // namespace
 
 TEST_CASE("replay: a trial among landmarks has the engine's bits under every estimator") {
-    check_bits(read_scenario_text("[scenario]\nworld = landmarks\nposes = 40\n", "test", "loop"), {0, 9, 256, 300});
+    check_bits(scenario_of(resolved(landmark_loop(40))), {0, 9, 256, 300});
 }
 
 TEST_CASE("replay: a trial of a user's own world has the engine's bits, failed ones too") {
@@ -81,7 +83,7 @@ TEST_CASE("replay: a trial of a user's own world has the engine's bits, failed o
 }
 
 TEST_CASE("replay: NEES, NIS and rows among landmarks follow from the recorded matrices") {
-    const Scenario scenario = read_scenario_text("[scenario]\nworld = landmarks\nposes = 25\n", "test", "loop");
+    const Scenario scenario = scenario_of(resolved(landmark_loop(25)));
     const Trajectory trajectory = replay_trial(scenario, 0, 5, 1);
     const std::vector<TrajectoryStep> steps = steps_of(trajectory);
     int first_sights = 0;

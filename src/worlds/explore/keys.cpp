@@ -23,6 +23,20 @@ const std::vector<std::string>& shared_keys() {
     return names;
 }
 
+std::vector<std::string> estimators_with_heading() {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < estimator_names().size(); ++i)
+        if (process_of(static_cast<Estimator>(i)) == Process::heading) names.push_back(estimator_names()[i]);
+    return names;
+}
+
+/// What a shared key says here, where that is not what it says in the deformable world.
+std::string help_of(const DeformableKey& key) {
+    if (key.name == "control.waypoints") return "path of the controller fixed as `x y, x y`, from 0 0 on (length)";
+    if (key.name == "arms.estimators") return "any of " + joined(estimators_with_heading()) + "; default: ekf";
+    return key.help;
+}
+
 /// `x y x y, x y x y`: the ends of each segment.
 std::vector<WallSegment> parse_walls(const std::string& value) {
     std::vector<WallSegment> walls;
@@ -61,8 +75,10 @@ std::vector<ExploreKey> own_keys() {
          [](const ExploreSettings& s) { return walls_text(s.walls); }, {"none"}},
         real("robot.radius", "what the robot's centre keeps from a wall (length)", above(0),
              [](auto& s) -> auto& { return s.radius; }),
-        real("robot.step", "d, what the robot moves a step along its waypoints (length)", above(0),
+        real("robot.step", "d, what the robot moves a step along its path (length)", above(0),
              [](auto& s) -> auto& { return s.features.step; }),
+        real_key<ExploreSettings>("robot.turn", "delta, turn per step on the circle", between(-3.2, 3.2),
+                                  [](auto& s) -> auto& { return s.features.turn; }, "rad"),
         choice_key<LandmarkMap, ExploreSettings>("landmarks.map", {"none", "prior", "known"},
                                                  [](auto& s) -> auto& { return s.map; }),
         real("landmarks.prior", "sigma of each axis of a landmark before it is seen (length)", above(0),
@@ -82,6 +98,8 @@ std::vector<ExploreKey> own_keys() {
         real("map.cell", "side of a cell of the grid (length)", above(0), [](auto& s) -> auto& { return s.cell; }),
         real("planner.coverage", "what a cell that comes into view is worth, in units of the cost", from(0),
              [](auto& s) -> auto& { return s.coverage; }),
+        choice_key<FixedPath, ExploreSettings>("control.path", {"waypoints", "straight", "circle"},
+                                               [](auto& s) -> auto& { return s.fixed_path; }),
         {"arms.controllers", "any of " + joined(explorer_names()),
          [](ExploreSettings& s, const std::string& v) {
              s.explorers = parse_names<Explorer>("arms.controllers", v, explorer_names());
@@ -102,9 +120,7 @@ std::vector<ExploreKey> all_keys() {
     add_common_keys(keys);
     for (const std::string& name : shared_keys()) {
         const DeformableKey& key = *std::ranges::find(scenario_keys(), name, &DeformableKey::name);
-        const bool path = name == "control.waypoints";
-        keys.push_back({key.name, path ? "path of the controller fixed as `x y, x y`, from 0 0 on (length)" : key.help,
-                        key.set, key.get, key.choices, false, key.sigma_unit, key.hidden});
+        keys.push_back({key.name, help_of(key), key.set, key.get, key.choices, false, key.sigma_unit, key.hidden});
     }
     for (ExploreKey& key : own_keys()) keys.push_back(std::move(key));
     std::ranges::stable_sort(keys, {}, rank);
@@ -172,12 +188,17 @@ const std::vector<ExploreKey>& explore_keys() {
 }
 
 ExploreSettings resolved(const ExploreSettings& settings) {
-    if (has(settings, Explorer::fixed) && settings.waypoints.empty())
+    if (has(settings, Explorer::fixed) && settings.fixed_path == FixedPath::as_features && settings.waypoints.empty())
         throw invalid_value("arms.controllers", names_text(settings.explorers, explorer_names()),
-                            "there are no waypoints for fixed", "Give control.waypoints");
+                            "there are no waypoints for fixed", "Give control.waypoints or another control.path");
     if (!has_variance(settings.prior))
         throw invalid_value("landmarks.prior", to_text(settings.prior), "its square is 0 and P singular",
                             "Give a standard deviation " + above_least);
+    for (const Estimator estimator : settings.arms.estimators.value_or(std::vector<Estimator>{}))
+        if (process_of(estimator) != Process::heading)
+            throw invalid_value("arms.estimators", names_text(*settings.arms.estimators, estimator_names()),
+                                estimator_names()[static_cast<std::size_t>(estimator)] + " has no heading",
+                                "Give some of " + joined(estimators_with_heading()));
     check_walls(settings);
     check_grid(settings);
     DeformableSettings shared = settings;
