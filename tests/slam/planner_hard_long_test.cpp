@@ -74,7 +74,6 @@ TEST_CASE("planner: no control costs more than the least, on 1,500 random hard s
 }
 
 TEST_CASE("planner: no control costs more than the least, on 100 random hard scenarios in every lane width") {
-    check_random<Lane<2>>(100);
     check_random<Lane<4>>(100);
     check_random<Lane<8>>(100);
 }
@@ -91,7 +90,6 @@ TEST_CASE("planner: by every criterion that is no trace the control is the plain
     for (const Settings& all_steps : without_trace) {
         const Settings criterion = many != nullptr ? with_poses(all_steps, "4") : all_steps;
         check_same<double>(hard_scenarios(40), criterion);
-        check_same<Lane<2>>(hard_scenarios(10), criterion);
         check_same<Lane<4>>(hard_scenarios(10), criterion);
         check_same<Lane<8>>(hard_scenarios(10), criterion);
     }
