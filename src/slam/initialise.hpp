@@ -1,5 +1,5 @@
 #pragma once
-// The initialisation of a feature that is seen for the first time [docs/estimators.md, The world of landmarks].
+// The initialisation of a feature that is seen for the first time [docs/estimators.md, First sight].
 //
 //   z  the sighting, body frame; sigma^2 its assumed variance; c = J d, the displacement of the feature by an error of
 //   the heading: d = f^ - r^, except for estimators that linearise elsewhere

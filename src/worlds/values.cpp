@@ -239,6 +239,13 @@ Process process_of(Estimator estimator) {
     return processes[static_cast<std::size_t>(estimator)];
 }
 
+std::vector<std::string> estimators_for(Process process) {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < estimator_names().size(); ++i)
+        if (process_of(static_cast<Estimator>(i)) == process) names.push_back(estimator_names()[i]);
+    return names;
+}
+
 std::vector<Controller> parse_controllers(const std::string& value) {
     return parse_names<Controller>("arms.controllers", value, controller_names());
 }

@@ -65,6 +65,7 @@ const std::vector<std::string>& controller_names();
 const std::vector<std::string>& estimator_names();
 /// The process model that an estimator is for.
 Process process_of(Estimator estimator);
+std::vector<std::string> estimators_for(Process process);
 std::vector<Controller> parse_controllers(const std::string& value);
 /// `none`, or names of planners of one's own, each with its version behind a colon where it has one.
 std::vector<OwnPlanner> parse_own_planners(const std::string& value);

@@ -5,6 +5,7 @@
 
 #include "catch.hpp"
 #include "oracle/landmarks.hpp"
+#include "worlds/values.hpp"
 
 #include <credence/ini.hpp>
 
@@ -69,11 +70,12 @@ TEST_CASE("landmarks: the scenario of the study is the classical loop") {
             CHECK(study.settings[i].value == value);
             continue;
         }
-        std::istringstream written(study.settings[i].value), exact(value);
-        double a = 0, b = 0;
-        for (char comma = 0; exact >> b; exact.peek() == ',' && exact >> comma && written >> comma) {
-            REQUIRE(written >> a);
-            CHECK(a == Approx(b).margin(0.6e-4));  // written to four decimals
+        const std::vector<Point> written = parse_points(key, study.settings[i].value, 20),
+                                 exact = parse_points(key, value, 20);
+        REQUIRE(written.size() == exact.size());
+        for (std::size_t j = 0; j < exact.size(); ++j) {  // written to four decimals
+            CHECK(written[j].x == Approx(exact[j].x).margin(0.6e-4));
+            CHECK(written[j].y == Approx(exact[j].y).margin(0.6e-4));
         }
     }
 }

@@ -125,9 +125,6 @@ void check_waypoints(const DeformableSettings& s) {
 
 void check_arms(const DeformableSettings& s) {
     const std::string process = s.process == Process::heading ? "heading" : "translation";
-    std::vector<std::string> fitting;
-    for (std::size_t i = 0; i < estimator_names().size(); ++i)
-        if (process_of(static_cast<Estimator>(i)) == s.process) fitting.push_back(estimator_names()[i]);
     const std::vector<Estimator> asked = *resolved(s).arms.estimators;
     const bool all_fit_the_other =
         std::ranges::none_of(asked, [&](Estimator one) { return process_of(one) == s.process; });
@@ -138,7 +135,7 @@ void check_arms(const DeformableSettings& s) {
             throw invalid_value(
                 "arms.estimators", names_text(asked, estimator_names()),
                 estimator_names()[static_cast<std::size_t>(estimator)] + " is not for model.process=" + process,
-                "Give some of " + joined(fitting) + otherwise);
+                "Give some of " + joined(estimators_for(s.process)) + otherwise);
     std::vector<std::string> names;  // of every arm there is, whichever are run
     for (const std::string& controller : controller_names())
         for (const std::string& estimator : estimator_names()) names.push_back(controller + "." + estimator);

@@ -23,17 +23,10 @@ const std::vector<std::string>& shared_keys() {
     return names;
 }
 
-std::vector<std::string> estimators_with_heading() {
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < estimator_names().size(); ++i)
-        if (process_of(static_cast<Estimator>(i)) == Process::heading) names.push_back(estimator_names()[i]);
-    return names;
-}
-
 /// What a shared key says here, where that is not what it says in the deformable world.
 std::string help_of(const DeformableKey& key) {
     if (key.name == "control.waypoints") return "path of the controller fixed as `x y, x y`, from 0 0 on (length)";
-    if (key.name == "arms.estimators") return "any of " + joined(estimators_with_heading()) + "; default: ekf";
+    if (key.name == "arms.estimators") return "any of " + joined(estimators_for(Process::heading)) + "; default: ekf";
     return key.help;
 }
 
@@ -198,7 +191,7 @@ ExploreSettings resolved(const ExploreSettings& settings) {
         if (process_of(estimator) != Process::heading)
             throw invalid_value("arms.estimators", names_text(*settings.arms.estimators, estimator_names()),
                                 estimator_names()[static_cast<std::size_t>(estimator)] + " has no heading",
-                                "Give some of " + joined(estimators_with_heading()));
+                                "Give some of " + joined(estimators_for(Process::heading)));
     check_walls(settings);
     check_grid(settings);
     DeformableSettings shared = settings;

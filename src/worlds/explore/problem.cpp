@@ -80,6 +80,7 @@ CellGrid grid_of(const ExploreSettings& settings) {
 ExploreProblem::ExploreProblem(const ExploreSettings& resolved_settings)
     : settings_(resolved_settings), base_(settings_) {
     static_cast<ProblemView&>(view_) = base_.view();
+    // Features stand still here, so that as_features is the path of the waypoints.
     if (settings_.fixed_path != FixedPath::as_features) view_.control.waypoints = view_.control.fixed;
     for (const WallSegment& wall : settings_.walls) walls_.push_back(line_of(wall));
     view_.walls = walls_.data();
