@@ -3,7 +3,7 @@
 
 #include "slam/estimators/estimators.hpp"
 #include "worlds/explore/explore.hpp"
-#include "worlds/explore/trial.hpp"
+#include "worlds/explore/single_workspace.hpp"
 
 #include "filter_samples.hpp"
 #include "landmark_loop.hpp"
@@ -88,9 +88,7 @@ template <class Estimating>
 LandmarkRun run_with(const ExploreSettings& scenario, const AnyNoise& noise) {
     const ExploreProblem problem(scenario);
     const ExploreView& view = problem.view();
-    const auto work = std::make_unique<ExploreWorkspace<double, Estimating>>();
-    const auto viewed = std::make_unique<bool[]>(static_cast<std::size_t>(view.grid.count()));
-    work->viewed = viewed.get();
+    const auto work = std::make_unique<SingleWorkspace<Estimating>>(view);
     Watcher watcher;
     watcher.first_pose.assign(static_cast<std::size_t>(view.features), view.poses);
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> figures(view.series_count, view.poses - 1);

@@ -290,5 +290,21 @@ Chosen<typename Trial::Real> chosen_by(const typename Trial::View& problem, int 
     }
 }
 
+/// Simulates a batch of an arm, or finds the commands that it asks for.
+template <class Trial, class Arm>
+void simulate_arm(const typename Trial::View& problem, const Arm& arm, const Batch& batch) {
+    const auto chosen = chosen_by<Trial>(problem, arm.planner, batch);
+    if (batch.commands == nullptr) {
+        BatchOf<Trial>::simulate(problem, Trial(arm.controller, chosen), batch);
+        return;
+    }
+    for (int k = 0; k + 1 < problem.poses; ++k) {
+        const auto& command = chosen.commands[k];
+        batch.commands[3 * k] = lane_of(command.turn, 0);
+        batch.commands[3 * k + 1] = lane_of(command.move.x, 0);
+        batch.commands[3 * k + 2] = lane_of(command.move.y, 0);
+    }
+}
+
 }  // namespace CREDENCE_TARGET
 }  // namespace credence

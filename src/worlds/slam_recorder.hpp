@@ -1,7 +1,6 @@
 #pragma once
 // The observer of a single trial of EKF-SLAM that records its trajectory.
 
-#include "engine/consulted.hpp"
 #include "slam/trial/problem.hpp"
 #include "slam/trial/workspace.hpp"
 
@@ -169,17 +168,5 @@ private:
 };
 
 }  // namespace CREDENCE_TARGET
-/// The commands [K - 1] that a planner of one's own chooses in one trial, of the type Trial as of Consulted; none of
-/// other arms, whose planner is -1.
-template <class Trial>
-std::vector<Command<double>> commands_of(const typename Trial::View& problem, int planner, std::uint64_t root_seed,
-                                         std::int64_t trial) {
-    if (planner < 0) return {};
-    std::vector<std::byte> memory(Consulted<Trial>::workspace_size(problem, 1) + 64);
-    std::byte* start = memory.data() + (64 - reinterpret_cast<std::uintptr_t>(memory.data()) % 64);
-    Consulted<Trial> consulted(problem, 1, Pieces(start));
-    const auto* commands = consulted.choose(*problem.planners[planner], root_seed, trial, 1);
-    return {commands, commands + problem.poses - 1};
-}
 
 }  // namespace credence

@@ -7,7 +7,7 @@
 #include "slam/estimators/estimators.hpp"
 #include "worlds/deformable/deformable.hpp"
 #include "worlds/explore/explore.hpp"
-#include "worlds/explore/trial.hpp"
+#include "worlds/explore/single_workspace.hpp"
 
 #include "catch.hpp"
 #include "support.hpp"
@@ -137,10 +137,6 @@ TEST_CASE("explore: a block is its trials one by one, on every target") {
     const ExploreProblem problem(settings);
     const ExploreView& view = problem.view();
     CHECK(find_world("explore")->all_series(scenario).size() == static_cast<std::size_t>(view.series_count));
-    const auto cells = static_cast<std::size_t>(view.grid.count());
-    const auto viewed = std::make_unique<bool[]>(2 * cells);
-    std::vector<int> queue(cells), from(cells);
-    std::vector<Belief<double, ExploreLayout::capacity>> ahead(2);
     constexpr int trials = 11;
     for (const Target& target : runnable_targets()) {
         CAPTURE(target.name);
@@ -150,9 +146,7 @@ TEST_CASE("explore: a block is its trials one by one, on every target") {
             with_estimator<Process::heading>(arms_of(settings)[a].estimator, [&](auto tag) {
                 CAPTURE(scenario.arms[a]);
                 using Estimating = typename decltype(tag)::template type<ExploreLayout, double>;
-                const auto work = std::make_unique<ExploreWorkspace<double, Estimating>>();
-                work->viewed = viewed.get(), work->queue = queue.data(), work->from = from.data();
-                work->ahead = ahead.data();
+                const auto work = std::make_unique<SingleWorkspace<Estimating>>(view);
                 Unobserved nothing;
                 for (int trial = 0; trial < trials; ++trial) {
                     double own[explore_column_count];
@@ -283,10 +277,7 @@ TEST_CASE("explore: the control chosen is the least of the costs, at hard parame
                 settings.poses = 60;
                 const ExploreProblem problem(settings);
                 const ExploreView& view = problem.view();
-                const auto cells = static_cast<std::size_t>(view.grid.count());
-                const auto viewed = std::make_unique<bool[]>(cells);
-                const auto work = std::make_unique<ExploreWorkspace<double, KalmanFilter<ExploreLayout, double>>>();
-                work->viewed = viewed.get();
+                const auto work = std::make_unique<SingleWorkspace<KalmanFilter<ExploreLayout, double>>>(view);
                 Watcher watcher{{}, view};
                 double columns[explore_column_count];
                 std::vector<double> figures(static_cast<std::size_t>(view.series_count * (view.poses - 1)));

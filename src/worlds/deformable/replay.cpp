@@ -1,11 +1,12 @@
 #include "worlds/deformable/deformable.hpp"
 
 #include <credence/error.hpp>
-#include "worlds/deformable/pack_trial.hpp"
-#include "worlds/counted.hpp"
+#include "slam/trial/trial.hpp"
+#include "worlds/single_trials.hpp"
 #include "worlds/slam_recorder.hpp"
 
 #include <memory>
+#include <optional>
 
 namespace credence {
 
@@ -51,10 +52,54 @@ private:
     std::size_t cost_;
 };
 
-/// `choose`: gives the commands of a trial that a planner of one's own chooses, by its type.
-template <class Noise, class Choose>
-Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, const std::string& source,
-                  const Choose& choose) {
+/// The noise of a single trial, keyed or, where there is a record, recorded: one type, since the templates of a trial
+/// take long to compile.
+class SingleDraws {
+public:
+    SingleDraws(const ProblemView& view, std::uint64_t root_seed, std::int64_t trial)
+        : keyed_(root_seed, static_cast<std::uint64_t>(trial), view.world.truncate, view.other) {}
+    SingleDraws(const ProblemView& view, const NoiseRecord& record) : SingleDraws(view, 0, 0) {
+        recorded_.emplace(record);
+    }
+    Vector2<double> normal(Source source, int pose, int index) const {
+        return recorded_ ? recorded_->normal(source, pose, index) : keyed_.normal(source, pose, index);
+    }
+    double uniform(Source source, int pose, int index) const {
+        return recorded_ ? recorded_->uniform(source, pose, index) : keyed_.uniform(source, pose, index);
+    }
+
+private:
+    KeyedDraws<double> keyed_;
+    std::optional<RecordedDraws> recorded_;
+};
+
+/// Calls use(single) with the SingleTrials of an arm.
+template <class Use>
+auto with_single_trials(const ProblemView& view, const Arm& arm, const Use& use) {
+    const auto of_process = [&](auto process) {
+        return with_estimator<process()>(arm.estimator, [&](auto estimator) {
+            using StateLayout = Layout<process(), any_count>;
+            using Estimating =
+                Attributed<typename decltype(estimator)::template type<StateLayout, double>, StateLayout>;
+            using Work = Workspace<StateLayout, double, Estimating>;
+            SingleTrials<Recorder, ProblemView, Controller, Work> single(view, arm.controller,
+                                                                         std::make_unique<Work>());
+            return use(single);
+        });
+    };
+    return view.process == Process::heading ? of_process(std::integral_constant<Process, Process::heading>{})
+                                            : of_process(std::integral_constant<Process, Process::translation>{});
+}
+
+TrialInputs<SingleDraws> inputs_of(const ProblemView& view, const Arm& arm, std::uint64_t root_seed,
+                                   std::int64_t trial) {
+    const Target target = best_target();
+    return {SingleDraws(view, root_seed, trial),
+            commands_of(target.workspace_size, target.simulate, view, arm, root_seed, trial)};
+}
+
+Trajectory replay(const Problem& problem, const Arm& arm, const TrialInputs<SingleDraws>& inputs,
+                  const std::string& source) {
     const ProblemView& view = problem.view();
     const DeformableSettings& settings = problem.scenario();
     Trajectory trajectory = empty_trajectory(scenario_of(settings), arm_name(settings, arm), trial_columns(settings));
@@ -62,62 +107,27 @@ Trajectory replay(const Problem& problem, const Arm& arm, const Noise& noise, co
     const SlamVariables variables =
         add_slam_variables(trajectory, settings, edge_list(settings), "that led to this pose");
     const std::size_t cost = plans(arm.controller) ? add_candidates(trajectory, settings) : 0;
-    std::vector<double> all_series(static_cast<std::size_t>(view.series_count) *
-                                   static_cast<std::size_t>(view.poses - 1));
     Recorder recorder(view, arm.controller, variables, cost, trajectory);
-    const auto run = [&](auto process, auto estimator) {
-        using StateLayout = Layout<process(), any_count>;
-        using Estimating = typename decltype(estimator)::template type<StateLayout, double>;
-        const auto work = std::make_unique<Workspace<StateLayout, double, Estimating>>();
-        const std::vector<Command<double>> commands =
-            choose(std::type_identity<DeformableTrial<StateLayout, double, decltype(estimator)>>{});
-        run_trial(view, arm.controller, noise, recorder, *work, trajectory.column_values.data(), all_series.data(),
-                  commands.empty() ? nullptr : commands.data());
-    };
-    const auto run_process = [&](auto process) {
-        with_estimator<process()>(arm.estimator, [&](auto estimator) { run(process, estimator); });
-    };
-    if (view.process == Process::heading)
-        run_process(std::integral_constant<Process, Process::heading>{});
-    else
-        run_process(std::integral_constant<Process, Process::translation>{});
+    with_single_trials(view, arm, [&](auto& single) {
+        single.record(inputs, recorder, trajectory.column_values.data());
+    });
     fill_failed(trajectory.columns, trajectory.column_values.data());
     return trajectory;
-}
-
-CountedVariances count(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trials) {
-    const ProblemView& view = problem.view();
-    const NoiseSettings& noise = problem.scenario().noise;
-    const double walk = noise.walk * noise.walk, feature = walk + noise.deformation * noise.deformation;
-    const std::vector<CountedSource> sources =
-        counted_sources(view.filter, feature > 0 ? walk / feature : 0, "measurement");
-    std::vector<double> all_series(static_cast<std::size_t>(view.series_count) *
-                                   static_cast<std::size_t>(view.poses - 1));
-    const auto run_process = [&](auto process) {
-        return with_estimator<process()>(arm.estimator, [&](auto estimator) {
-            using StateLayout = Layout<process(), any_count>;
-            using Estimating =
-                Attributed<typename decltype(estimator)::template type<StateLayout, double>, StateLayout>;
-            const auto work = std::make_unique<Workspace<StateLayout, double, Estimating>>();
-            return count_variances(view, sources, work->estimator, trials, column_count,
-                                   [&](std::int64_t trial, auto& observer, double* columns) {
-                const KeyedDraws<double> draws(root_seed, static_cast<std::uint64_t>(trial), view.world.truncate,
-                                               view.other);
-                const auto commands = commands_of<DeformableTrial<StateLayout, double, decltype(estimator)>>(
-                    view, arm.planner, root_seed, trial);
-                run_trial(view, arm.controller, draws, observer, *work, columns, all_series.data(),
-                          commands.empty() ? nullptr : commands.data());
-            });
-        });
-    };
-    return view.process == Process::heading ? run_process(std::integral_constant<Process, Process::heading>{})
-                                            : run_process(std::integral_constant<Process, Process::translation>{});
 }
 
 }  // namespace
 
 CountedVariances DeformableSimulation::counted(std::size_t arm, std::uint64_t root_seed, std::int64_t trials) const {
-    return count(*problem_, arms_[arm], root_seed, trials);
+    const ProblemView& view = problem_->view();
+    const NoiseSettings& noise = problem_->scenario().noise;
+    const double walk = noise.walk * noise.walk, feature = walk + noise.deformation * noise.deformation;
+    const std::vector<CountedSource> sources =
+        counted_sources(view.filter, feature > 0 ? walk / feature : 0, "measurement");
+    return with_single_trials(view, arms_[arm], [&](auto& single) {
+        return single.count(sources, trials, column_count, [&](std::int64_t trial) {
+            return inputs_of(view, arms_[arm], root_seed, trial);
+        });
+    });
 }
 
 std::size_t add_candidates(Trajectory& trajectory, const DeformableSettings& settings) {
@@ -164,12 +174,7 @@ void check_covers(const NoiseRecord& record, const DeformableSettings& scenario,
 }
 
 Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial) {
-    return replay(problem, arm,
-                  KeyedDraws<double>(root_seed, static_cast<std::uint64_t>(trial), problem.view().world.truncate,
-                                     problem.view().other),
-                  source_text(root_seed, trial), [&](auto type) {
-                      return commands_of<typename decltype(type)::type>(problem.view(), arm.planner, root_seed, trial);
-                  });
+    return replay(problem, arm, inputs_of(problem.view(), arm, root_seed, trial), source_text(root_seed, trial));
 }
 
 std::vector<Trajectory> replay_record(const Scenario& scenario, const NoiseRecord& record, const std::string& file) {
@@ -178,8 +183,7 @@ std::vector<Trajectory> replay_record(const Scenario& scenario, const NoiseRecor
     const Problem problem(settings);
     std::vector<Trajectory> trajectories;
     for (const Arm& arm : arms_of(settings))
-        trajectories.push_back(replay(problem, arm, RecordedDraws(record), "noise record",
-                                      [](auto) { return std::vector<Command<double>>{}; }));
+        trajectories.push_back(replay(problem, arm, {SingleDraws(problem.view(), record), {}}, "noise record"));
     return trajectories;
 }
 

@@ -49,8 +49,7 @@ auto with_trial(const ProblemView& problem, const Arm& arm, const Use& use) {
 
 void simulate(const ProblemView& problem, const Arm& arm, const Batch& batch) {
     with_trial(problem, arm, [&](auto type) {
-        using Trial = typename decltype(type)::type;
-        BatchOf<Trial>::simulate(problem, Trial(arm.controller, chosen_by<Trial>(problem, arm.planner, batch)), batch);
+        simulate_arm<typename decltype(type)::type>(problem, arm, batch);
     });
 }
 

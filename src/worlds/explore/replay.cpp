@@ -1,8 +1,8 @@
 #include "worlds/explore/explore.hpp"
 
 #include "worlds/deformable/deformable.hpp"
-#include "worlds/explore/pack_trial.hpp"
-#include "worlds/counted.hpp"
+#include "worlds/explore/single_workspace.hpp"
+#include "worlds/single_trials.hpp"
 #include "worlds/slam_recorder.hpp"
 
 #include <limits>
@@ -68,40 +68,23 @@ private:
     ExploreVariables own_;
 };
 
-/// The workspace of single trials, with room for the cells and for the series.
-template <class Estimating>
-class SingleTrials {
-public:
-    explicit SingleTrials(const ExploreView& view)
-        : view_(view),
-          viewed_(std::make_unique<bool[]>(static_cast<std::size_t>(view.grid.count() * view.control.horizon))),
-          queue_(static_cast<std::size_t>(view.grid.count())), from_(queue_.size()),
-          ahead_(static_cast<std::size_t>(view.control.horizon)),
-          all_series_(static_cast<std::size_t>(view.series_count) * static_cast<std::size_t>(view.poses - 1)) {
-        work_->viewed = viewed_.get();
-        work_->queue = queue_.data();
-        work_->from = from_.data();
-        work_->ahead = ahead_.data();
-    }
-    Estimating& estimator() { return work_->estimator; }
-    template <class Observer>
-    void run(Explorer controller, const std::vector<Command<double>>& commands, std::uint64_t root_seed,
-             std::int64_t trial, Observer& observer, double* columns) {
-        const KeyedDraws<double> draws(root_seed, static_cast<std::uint64_t>(trial), view_.world.truncate,
-                                       view_.other);
-        run_trial(view_, controller, draws, observer, *work_, columns, all_series_.data(),
-                  commands.empty() ? nullptr : commands.data());
-    }
+/// Calls use(single) with the SingleTrials of an arm.
+template <class Use>
+auto with_single_trials(const ExploreView& view, const ExploreArm& arm, const Use& use) {
+    return with_estimator<Process::heading>(arm.estimator, [&](auto estimator) {
+        using Estimating = typename decltype(estimator)::template type<ExploreLayout, double>;
+        using Work = SingleWorkspace<Attributed<Estimating, ExploreLayout>>;
+        SingleTrials<ExploreRecorder, ExploreView, Explorer, Work> single(view, arm.controller,
+                                                                          std::make_unique<Work>(view));
+        return use(single);
+    });
+}
 
-private:
-    const ExploreView& view_;
-    std::unique_ptr<bool[]> viewed_;
-    std::vector<int> queue_, from_;
-    std::vector<Belief<double, ExploreLayout::capacity>> ahead_;
-    std::vector<double> all_series_;
-    std::unique_ptr<ExploreWorkspace<double, Estimating>> work_ =
-        std::make_unique<ExploreWorkspace<double, Estimating>>();
-};
+TrialInputs<KeyedDraws<double>> inputs_of(const ExploreView& view, const ExploreArm& arm, const Target& target,
+                                          std::uint64_t root_seed, std::int64_t trial) {
+    return {{root_seed, static_cast<std::uint64_t>(trial), view.world.truncate, view.other},
+            commands_of(target.explore_workspace_size, target.simulate_explore, view, arm, root_seed, trial)};
+}
 
 }  // namespace
 
@@ -116,12 +99,9 @@ Trajectory ExploreSimulation::replay(const Scenario& scenario, std::size_t arm, 
     const ExploreVariables own =
         add_explore_variables(trajectory, settings, view.grid, plans(arms_[arm].controller));
     ExploreRecorder recorder(view, variables, own, trajectory);
-    with_estimator<Process::heading>(arms_[arm].estimator, [&](auto estimator) {
-        using Estimating = typename decltype(estimator)::template type<ExploreLayout, double>;
-        using Trial = ExploreTrial<double, decltype(estimator)>;
-        SingleTrials<Estimating>(view).run(arms_[arm].controller,
-                                           commands_of<Trial>(view, arms_[arm].planner, root_seed, trial), root_seed,
-                                           trial, recorder, trajectory.column_values.data());
+    with_single_trials(view, arms_[arm], [&](auto& single) {
+        single.record(inputs_of(view, arms_[arm], target_, root_seed, trial), recorder,
+                      trajectory.column_values.data());
     });
     fill_failed(trajectory.columns, trajectory.column_values.data());
     return trajectory;
@@ -131,15 +111,9 @@ CountedVariances ExploreSimulation::counted(std::size_t arm, std::uint64_t root_
     const ExploreView& view = problem_.view();
     const std::vector<CountedSource> sources =
         counted_sources(view.filter, 0, view.map == LandmarkMap::known ? "measurement" : "start");
-    return with_estimator<Process::heading>(arms_[arm].estimator, [&](auto estimator) {
-        using Estimating =
-            Attributed<typename decltype(estimator)::template type<ExploreLayout, double>, ExploreLayout>;
-        SingleTrials<Estimating> single(view);
-        return count_variances(view, sources, single.estimator(), trials, explore_column_count,
-                               [&](std::int64_t trial, auto& observer, double* columns) {
-            using Trial = ExploreTrial<double, decltype(estimator)>;
-            single.run(arms_[arm].controller, commands_of<Trial>(view, arms_[arm].planner, root_seed, trial), root_seed,
-                       trial, observer, columns);
+    return with_single_trials(view, arms_[arm], [&](auto& single) {
+        return single.count(sources, trials, explore_column_count, [&](std::int64_t trial) {
+            return inputs_of(view, arms_[arm], target_, root_seed, trial);
         });
     });
 }

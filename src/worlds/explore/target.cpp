@@ -14,8 +14,7 @@ using Real = Pack<CREDENCE_LANES>;
 
 void simulate_explore(const ExploreView& problem, const ExploreArm& arm, const Batch& batch) {
     with_estimator<Process::heading>(arm.estimator, [&](auto tag) {
-        using Trial = ExploreTrial<Real, decltype(tag)>;
-        BatchOf<Trial>::simulate(problem, Trial(arm.controller, chosen_by<Trial>(problem, arm.planner, batch)), batch);
+        simulate_arm<ExploreTrial<Real, decltype(tag)>>(problem, arm, batch);
     });
 }
 
