@@ -1,5 +1,5 @@
 #pragma once
-// Trials of a world of SLAM that are run once more, one by one: to record one, or to find what P counts for each source.
+// Trials of a world of SLAM that are run one by one: to record one, or to find what P counts for each source.
 
 #include <credence/detail/world.hpp>
 

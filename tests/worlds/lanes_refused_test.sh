@@ -6,6 +6,13 @@ source=$1 cxx=$2 eigen=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
+# The headers are parsed once.
+mkdir "$work/credence"
+for header in own_trial own_world; do
+  "$cxx" -std=c++20 -w -I"$source/include" -isystem "$eigen" -x c++-header "$source/include/credence/$header.hpp" \
+    -o "$work/credence/$header.hpp.gch"
+done
+
 # compiles NAME CODE: whether a filter with this line compiles; its messages are in NAME.log.
 compiles() {
   local header=own_trial
@@ -13,7 +20,7 @@ compiles() {
   printf '%s\n' "#include <credence/$header.hpp>" '#include <cmath>' 'using namespace credence; using Real = Lane<4>;' \
     'Real filter(Real x, Real y, Eigen::Matrix<Real, 5, 5> S, Eigen::Matrix<Real, 5, 1> b) {' "$2" \
     'return x + y + S(0) + b(0); }' >"$work/$1.cpp"
-  "$cxx" -std=c++20 -fsyntax-only -w -I"$source/include" -isystem "$eigen" "$work/$1.cpp" >"$work/$1.log" 2>&1
+  "$cxx" -std=c++20 -fsyntax-only -w -I"$work" -I"$source/include" -isystem "$eigen" "$work/$1.cpp" >"$work/$1.log" 2>&1
 }
 # refused NAME SENTENCE CODE
 refused() {
