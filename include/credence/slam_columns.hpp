@@ -15,7 +15,6 @@ struct SlamState {
     std::string length_unit;
     std::vector<Estimator> estimators{};  ///< of all arms
 
-    SlamState() = default;
     /// Of a scenario whose defaults may be unresolved.
     SlamState(const DeformableSettings& settings);
 

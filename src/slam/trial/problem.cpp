@@ -63,13 +63,6 @@ Point polar(double s, double angle) {
     return {s * r.cosine, s * r.sine};
 }
 
-void set_range(SensorParameters& sensor, double range_min, double range_max) {
-    sensor.range_min = range_min;
-    sensor.range_max = range_max;
-    sensor.squared_range_min = least_square(range_min);
-    sensor.squared_range_max = greatest_square(range_max);
-}
-
 std::vector<Point> feature_translations(const DeformableSettings& s) {
     std::vector<Point> translations;
     for (int k = 0; k + 1 < s.poses; ++k) switch (s.features.path) {
@@ -204,7 +197,10 @@ void Problem::fill_world() {
 
     const SensorSettings& settings = scenario_.sensor;
     SensorParameters& sensor = view_.sensor;
-    set_range(sensor, settings.range_min, settings.range_max);
+    sensor.range_min = settings.range_min;
+    sensor.range_max = settings.range_max;
+    sensor.squared_range_min = least_square(settings.range_min);
+    sensor.squared_range_max = greatest_square(settings.range_max);
     sensor.noise = settings.noise;
     sensor.sigma = settings.sigma;
     sensor.sigma_near = settings.sigma_near;

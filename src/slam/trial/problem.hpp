@@ -13,9 +13,6 @@ class Planner;
 /// s (cos angle, sin angle), by our own sincos: the same bits everywhere.
 Point polar(double s, double angle);
 
-/// The range in which a feature is seen, both ends included.
-void set_range(SensorParameters& sensor, double range_min, double range_max);
-
 /// A state whose features enter it one by one. Those that are absent have errors of 0 and a variance below that of
 /// anything known, and NEES of a group that is there in part are those of its part, times the group's dimension over
 /// that of the part.

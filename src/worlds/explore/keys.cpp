@@ -23,11 +23,16 @@ const std::vector<std::string>& shared_keys() {
     return names;
 }
 
-/// What a shared key says here, where that is not what it says in the deformable world.
-std::string help_of(const DeformableKey& key) {
-    if (key.name == "control.waypoints") return "path of the controller fixed as `x y, x y`, from 0 0 on (length)";
-    if (key.name == "arms.estimators") return "any of " + joined(estimators_for(Process::heading)) + "; default: ekf";
-    return key.help;
+/// A key of the deformable world as it is here.
+ExploreKey shared_key(const DeformableKey& key) {
+    ExploreKey shared{key.name, key.help, key.set, key.get, key.choices, false, key.sigma_unit, key.hidden};
+    if (key.name == "control.waypoints")
+        shared.help = "path of the controller fixed as `x y, x y`, from 0 0 on (length)";
+    if (key.name == "arms.estimators") {
+        shared.choices = estimators_for(Process::heading);
+        shared.help = "any of " + joined(shared.choices) + "; default: ekf";
+    }
+    return shared;
 }
 
 /// `x y x y, x y x y`: the ends of each segment.
@@ -111,10 +116,8 @@ int rank(const ExploreKey& key) {
 std::vector<ExploreKey> all_keys() {
     std::vector<ExploreKey> keys;
     add_common_keys(keys);
-    for (const std::string& name : shared_keys()) {
-        const DeformableKey& key = *std::ranges::find(scenario_keys(), name, &DeformableKey::name);
-        keys.push_back({key.name, help_of(key), key.set, key.get, key.choices, false, key.sigma_unit, key.hidden});
-    }
+    for (const std::string& name : shared_keys())
+        keys.push_back(shared_key(*std::ranges::find(scenario_keys(), name, &DeformableKey::name)));
     for (ExploreKey& key : own_keys()) keys.push_back(std::move(key));
     std::ranges::stable_sort(keys, {}, rank);
     add_budget_keys(keys, slam_sources());
