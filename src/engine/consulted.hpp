@@ -7,6 +7,7 @@
 #include <credence/detail/draws.hpp>
 #include <credence/detail/planner_batch.hpp>
 #include "engine/detail.hpp"
+#include "engine/pieces.hpp"
 #include "engine/simulate_batch.hpp"
 #include "slam/planning/workspace.hpp"
 
@@ -18,26 +19,6 @@ namespace credence {
 inline constexpr int trials_together = 64;
 
 inline namespace CREDENCE_TARGET {
-
-/// A number of bytes up to the next boundary of 64.
-constexpr std::size_t padded(std::size_t bytes) { return (bytes + 63) / 64 * 64; }
-
-/// Memory one piece after the other, each from a 64-byte boundary on; without a start it only counts.
-class Pieces {
-public:
-    explicit Pieces(std::byte* start = nullptr) : start_(start) {}
-    template <class T>
-    T* take(std::size_t count) {
-        const std::size_t at = size_;
-        size_ += padded(count * sizeof(T));
-        return start_ == nullptr ? nullptr : reinterpret_cast<T*>(start_ + at);
-    }
-    std::size_t size() const { return size_; }
-
-private:
-    std::byte* start_;
-    std::size_t size_ = 0;
-};
 
 /// The trials of a batch under a planner. `Trial` is a world's as of BatchOf, with `consults`, whether it can be one
 /// under a planner, and if so with the type Steps, which has start, step, layout and work, and the functions
@@ -300,9 +281,7 @@ void simulate_arm(const typename Trial::View& problem, const Arm& arm, const Bat
     }
     for (int k = 0; k + 1 < problem.poses; ++k) {
         const auto& command = chosen.commands[k];
-        batch.commands[3 * k] = lane_of(command.turn, 0);
-        batch.commands[3 * k + 1] = lane_of(command.move.x, 0);
-        batch.commands[3 * k + 2] = lane_of(command.move.y, 0);
+        batch.commands[k] = {lane_of(command.turn, 0), {lane_of(command.move.x, 0), lane_of(command.move.y, 0)}};
     }
 }
 

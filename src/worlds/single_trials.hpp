@@ -183,16 +183,15 @@ std::vector<Command<double>> commands_of(std::size_t (*workspace_size)(const Vie
     std::vector<Command<double>> commands;
     if (arm.planner < 0) return commands;
     WorkRoom room;
-    std::vector<double> numbers(3 * static_cast<std::size_t>(problem.poses - 1));
+    std::vector<Control> controls(static_cast<std::size_t>(problem.poses - 1));
     Batch batch;
     batch.root_seed = root_seed;
     batch.first_trial = trial;
     batch.trials = 1;
     batch.workspace = room.of_size(workspace_size(problem, arm));
-    batch.commands = numbers.data();
+    batch.commands = controls.data();
     simulate(problem, arm, batch);
-    for (const double* at = numbers.data(); at != numbers.data() + numbers.size(); at += 3)
-        commands.push_back({at[0], {at[1], at[2]}});
+    for (const Control& control : controls) commands.push_back(command_from<double>(control));
     return commands;
 }
 

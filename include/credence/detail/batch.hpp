@@ -5,6 +5,8 @@
 
 namespace credence {
 
+struct Control;
+
 /// Sizes of a scenario's columns and series.
 struct SimulationShape {
     int poses = 0;          ///< K
@@ -41,9 +43,8 @@ struct Batch : RunningSums {
     double* product_square_sums = nullptr;  ///< [lags, 8], added to: of each trial's sum, squared
     double* product_counts = nullptr;   ///< [lags, 8], added to
     void* workspace = nullptr;          ///< workspace_size bytes from a 64-byte boundary on
-    /// [K - 1, 3] turn and displacement. Not null: the commands that the arm's planner chooses in the first trial are
-    /// written here, and nothing else is computed.
-    double* commands = nullptr;
+    /// [K - 1] where only the commands are asked for that the arm's planner chooses in the first trial; else null.
+    Control* commands = nullptr;
 };
 
 }  // namespace credence

@@ -93,7 +93,7 @@ void DeformableSimulation::check_repeats(std::uint64_t root_seed) const {
 
 Trajectory DeformableSimulation::replay(const Scenario&, std::size_t arm, std::uint64_t root_seed,
                                         std::int64_t trial) const {
-    return replay_trial(*problem_, arms_[arm], root_seed, trial);
+    return replay_trial(*problem_, arms_[arm], root_seed, trial, target_);
 }
 
 Block run_block(const Problem& problem, std::uint64_t root_seed, std::int64_t index, int trials, const Target& target) {

@@ -47,7 +47,8 @@ private:
 std::size_t add_candidates(Trajectory& trajectory, const DeformableSettings& settings);
 
 /// One trial of a problem.
-Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial);
+Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial,
+                        const Target& target = best_target());
 
 /// Throws InputError where the noise record is too short, too narrow or lacks draws of the scenario. `file` names it.
 void check_covers(const NoiseRecord& record, const DeformableSettings& scenario, const std::string& file);

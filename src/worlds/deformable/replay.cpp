@@ -91,9 +91,8 @@ auto with_single_trials(const ProblemView& view, const Arm& arm, const Use& use)
                                             : of_process(std::integral_constant<Process, Process::translation>{});
 }
 
-TrialInputs<SingleDraws> inputs_of(const ProblemView& view, const Arm& arm, std::uint64_t root_seed,
-                                   std::int64_t trial) {
-    const Target target = best_target();
+TrialInputs<SingleDraws> inputs_of(const ProblemView& view, const Arm& arm, const Target& target,
+                                   std::uint64_t root_seed, std::int64_t trial) {
     return {SingleDraws(view, root_seed, trial),
             commands_of(target.workspace_size, target.simulate, view, arm, root_seed, trial)};
 }
@@ -125,7 +124,7 @@ CountedVariances DeformableSimulation::counted(std::size_t arm, std::uint64_t ro
         counted_sources(view.filter, feature > 0 ? walk / feature : 0, "measurement");
     return with_single_trials(view, arms_[arm], [&](auto& single) {
         return single.count(sources, trials, column_count, [&](std::int64_t trial) {
-            return inputs_of(view, arms_[arm], root_seed, trial);
+            return inputs_of(view, arms_[arm], target_, root_seed, trial);
         });
     });
 }
@@ -173,8 +172,10 @@ void check_covers(const NoiseRecord& record, const DeformableSettings& scenario,
         refuse("planners of one's own run on draws alone", "Set arms.planners=none");
 }
 
-Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial) {
-    return replay(problem, arm, inputs_of(problem.view(), arm, root_seed, trial), source_text(root_seed, trial));
+Trajectory replay_trial(const Problem& problem, const Arm& arm, std::uint64_t root_seed, std::int64_t trial,
+                        const Target& target) {
+    return replay(problem, arm, inputs_of(problem.view(), arm, target, root_seed, trial),
+                  source_text(root_seed, trial));
 }
 
 std::vector<Trajectory> replay_record(const Scenario& scenario, const NoiseRecord& record, const std::string& file) {
