@@ -1,9 +1,13 @@
 #!/usr/bin/env bash
-# The verdict where the truth has errors of its own: writes truth.csv and truth-logs.csv beside this script, of
+# The verdict where the truth has errors of its own: prints truth.csv and truth-logs.csv, two tables of
 # docs/theory/statistics.md; some five minutes of processor time. The numbers are the same on every machine whose
 # standard library draws alike.
+#
+#   bash experiments/verdict/truth.sh [STUDIES]      STUDIES a cell, 24 by default
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 source experiments/verdict/program.sh verdict_truth
-"$built/verdict_truth" cells >experiments/verdict/truth.csv
-"$built/verdict_truth" logs >experiments/verdict/truth-logs.csv
+for table in cells logs; do
+  "$built/verdict_truth" $table "$@" | sed -e 's/,/ | /g' -e 's/.*/| & |/' -e '1a |---|'
+  echo
+done
