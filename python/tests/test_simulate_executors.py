@@ -213,10 +213,10 @@ print(study.failures, file=sys.stderr)
 STOPPED = """
 import pathlib, sys
 import credence.simulating
-from credence._simulate_command import main
+from credence._commands import obeyed
 
 pathlib.Path("begun").touch()
-sys.exit(main(sys.argv[1:]))
+sys.exit(obeyed("simulate", sys.argv[1:]))
 """
 
 
