@@ -9,9 +9,9 @@ trap 'rm -rf "$work"' EXIT
 cmake --install build --prefix "$work/usr" >"$work/log"
 compilers=(c++ "$@")
 for compiler in "${compilers[@]}"; do
-  # (The bits are the same at any level of optimisation, and this takes a third of the time to compile.)
+  # (The bits are the same at any level of optimisation, and -O1 takes half as long to compile.)
   { cmake -S experiments/worlds -B "$work/$compiler" -DCMAKE_PREFIX_PATH="$work/usr" -DCMAKE_CXX_COMPILER="$compiler" \
-      -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG -DCREDENCE_NOT_FLAT -Wno-psabi" &&
+      -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG" &&
     cmake --build "$work/$compiler" -j "$(nproc)"; } >"$work/log" 2>&1 || { tail -n 40 "$work/log"; exit 1; }
 done
 compared=0
@@ -22,9 +22,10 @@ for scenario in experiments/worlds/*.ini; do
   }
   CREDENCE_FORCE_TARGET=portable run expected c++ 1
   for compiler in "${compilers[@]}"; do
-    for target in portable v3 v4; do
+    # (Those that credence was built for.)
+    for target in $(ls "$work/$compiler"/gallery_*.o | sed 's|.*/gallery_\(.*\)\.o|\1|'); do
       CREDENCE_FORCE_TARGET=$target run other "$compiler" 3 2>"$work/refused" ||
-        { grep -q 'cannot run it\|not built for it' "$work/refused" || { cat "$work/refused"; exit 1; }; continue; }
+        { grep -q 'cannot run it' "$work/refused" || { cat "$work/refused"; exit 1; }; continue; }
       h5diff --exclude-path /run "$work/expected.h5" "$work/other.h5" ||
         { echo "$scenario: $compiler and $target give other bits than g++ and portable"; exit 1; }
       compared=$((compared + 1))
