@@ -10,6 +10,7 @@ from common import Filter, Study, halved, in_world_frame, of_half_angles, withou
 INCREMENT = {"chart": "increment"}
 SIMULATED = {"noise": "simulated"}
 ONE_FACTOR = "P is too small by a factor of about"
+TOO_LARGE = "P is too large by a factor of about"
 DIRECTIONS = "pessimistic (directions): all"
 DROPPED = "that they are not correlated"
 OTHER_CHART = "their directions are wrong: is the error in the chart and frame and of the step of P"
@@ -20,7 +21,7 @@ def radar(kind: str) -> Study:
     drawn = {"kind": kind, **SIMULATED, "start": "drawn"}
     expected = "mixed" if kind == "ukf" else "optimistic"
     return Study("filterpy", f"radar, {kind.upper()}", "filterpy_radar", 1300, 300, (
-        Filter("as documented", "optimistic", {"kind": kind}),
+        Filter("as documented", "failed", {"kind": kind}),
         Filter("Q and R of the simulated radar", expected, {"kind": kind, **SIMULATED}, expected_short="optimistic"),
         Filter("and the truth drawn from P0", "consistent", drawn, trials=2000),
         Filter("wrong: P halved", "optimistic", drawn, halved, ONE_FACTOR, trials=2000,
@@ -30,8 +31,9 @@ def radar(kind: str) -> Study:
 
 def tutorial(number: int, kind: str) -> Study:
     """A study of one of Stone Soup's tutorials."""
+    known_short = "pessimistic" if kind == "kf" else "consistent"
     return Study("Stone Soup", f"tutorial {number}, {kind.upper()}", "stonesoup_tutorials", 1000, 200, (
-        Filter("as documented, from a known state", "pessimistic", {"kind": kind}),
+        Filter("as documented, from a known state", "pessimistic", {"kind": kind}, expected_short=known_short),
         Filter("the truth drawn from the prior", "consistent", {"kind": kind, "start": "drawn"}),
         Filter("wrong: variances alone", "mixed", {"kind": kind, "start": "drawn"}, without_correlations, DROPPED,
                says_short=DIRECTIONS),
@@ -47,14 +49,15 @@ STUDIES = (
         Filter("as documented, P of gtsam.Marginals", "consistent"),
         Filter("wrong: errors in the world's frame", "mixed", {}, in_world_frame, OTHER_CHART, says_short=DIRECTIONS),
         Filter("as documented, P of iSAM2 itself", "optimistic", {"marginals_of": "isam"}),
-        Filter("only new factors, P of iSAM2", "consistent", {"marginals_of": "isam", "only_new_factors": True}),
+        Filter("only new factors, P of iSAM2", "undecided", {"marginals_of": "isam", "only_new_factors": True},
+               expected_short="consistent"),
     )),
     Study("GTSAM", "IMU preintegration", "gtsam_imu", 1500, 400, (
-        Filter("as documented, predict() against the truth", "mixed"),
-        Filter("preintegrated(), against its sums without noise", "mixed", INCREMENT, expected_short="optimistic"),
+        Filter("as documented, predict() against the truth", "failed"),
+        Filter("preintegrated(), against its sums without noise", "failed", INCREMENT),
         Filter("the same for 11 s, less than a full turn", "consistent", {**INCREMENT, "seconds": 11}),
         Filter("wrong: sigma of a sample given as a density", "pessimistic", {**INCREMENT, "seconds": 11, "scale": 10},
-               says=ONE_FACTOR, says_short="pessimistic (NEES/dim): "),
+               says=TOO_LARGE, says_short="pessimistic (NEES/dim): "),
     )),
     radar("ekf"),
     radar("ukf"),
@@ -63,7 +66,7 @@ STUDIES = (
     tutorial(3, "ukf"),
     Study("ahrs", "attitude, EKF", "ahrs_attitude", 1000, 250, (
         Filter("as documented, its own variances", "pessimistic"),
-        Filter("variances of the simulated sensors", "optimistic", {"variances": "simulated"}),
+        Filter("variances of the simulated sensors", "failed", {"variances": "simulated"}),
         Filter("and slower motion", "consistent", {"variances": "simulated", "span": 0.5}),
         Filter("wrong: P of half the angle", "optimistic", {"variances": "simulated", "span": 0.5}, of_half_angles,
                ONE_FACTOR),
@@ -71,12 +74,12 @@ STUDIES = (
     Study("filterpy", "manoeuvring target, IMM", "filterpy_imm", 2000, 400, (
         Filter("as documented, the truth changes modes as it is told", "consistent"),
         Filter("wrong: P halved", "optimistic", {}, halved, ONE_FACTOR, says_short="optimistic (NEES/dim): all 2"),
-        Filter("the quiet mode alone, the truth as before", "optimistic", {"quiet": True}),
+        Filter("the quiet mode alone, the truth as before", "failed", {"quiet": True}),
     )),
     Study("simdkalman", "level and trend", "simdkalman_series", 2000, 500, (
         Filter("as documented, filtered", "consistent"),
         Filter("wrong: P halved", "optimistic", {}, halved, ONE_FACTOR, says_short="optimistic (NEES/dim): all 2"),
         Filter("as documented, smoothed", "consistent", {"result": "smoothed"}),
-        Filter("filtered, from a known state", "pessimistic", {"start": "known"}),
+        Filter("filtered, from a known state", "pessimistic", {"start": "known"}, expected_short="consistent"),
     ), batch=True),
 )
