@@ -401,21 +401,22 @@ def test_the_command_draws_all_that_a_file_has(tmp_path, capsys):
 
 THREE = [f"ekf-circle-ranged-paired-{column}" for column in ("trace_P", "unseen", "pose_error")]
 FILMED = ["--kind", "animation", "--scenario", "ekf-circle-ranged", "--arms", "greedy", "--trial", "17"]
+SVG = ["--vector", "svg"]  # takes half as long as PDF, whose fonts are cut to size
 
 
 @pytest.mark.parametrize(("make", "words", "stems"), [
     (studies.swept, [], [f"base-heading-noise-sweep-{what}" for what in ("nees_ratio", "trace_P", "difference")]),
     (studies.trajectory, [], [f"ekf-circle-ranged-greedy.ekf-seed-1-trial-17-{kind}" for kind in OF_TRIAL]),
-    (studies.waypoints, ["--kind", "paired", "--vector", "svg"], THREE),
+    (studies.waypoints, ["--kind", "paired"], THREE),
     (MAKERS[7], ["--kind", "paired", "--arms", "random,follow"], THREE),
     (studies.two_scenarios, FILMED, ["ekf-circle-ranged-animation-greedy.ekf"])])
 def test_the_command_draws_grids_trials_pairs_and_films(make, words, stems, tmp_path):
-    assert main(given(make(), "-o", tmp_path / "new", *words)) == 0
+    assert main(given(make(), "-o", tmp_path / "new", *SVG, *words)) == 0
     assert {path.stem for path in (tmp_path / "new").iterdir()} == {*stems}
 
 
 def test_the_command_says_what_aggregates_do_not_hold(tmp_path, capsys):
-    assert main(given(studies.aggregates(), "-o", tmp_path)) == 0
+    assert main(given(studies.aggregates(), "-o", tmp_path, *SVG)) == 0
     assert "keeps aggregates. They need the trials" in capsys.readouterr().err
     assert not list(tmp_path.glob("*distribution*"))
     assert list(tmp_path.glob("*verdicts*"))

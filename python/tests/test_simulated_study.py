@@ -174,7 +174,7 @@ def test_every_picture_is_drawn_of_a_simulation(simulated, kind):
 
 
 def test_the_command_draws_columns_of_ones_own(simulated, tmp_path, capsys):
-    assert main([simulated["fixed"].path, "-o", str(tmp_path)]) == 0
+    assert main([simulated["fixed"].path, "-o", str(tmp_path), "--vector", "svg"]) == 0
     drawn = {one.stem for one in tmp_path.iterdir()}
     assert {f"slam-distribution-{name}" for name in ("rmse", "unseen", "trace_P", "pose_error")} <= drawn
     assert "slam-trace_P" in drawn
