@@ -134,7 +134,11 @@ class Expected:
     def compute_state(self):
         error, covariance = self.record.error[self.there], self.P[self.there]
         self.log_score = np.full((self.trials, self.steps), np.nan)
-        self.log_score[self.there] = [-stats.multivariate_normal.logpdf(e, cov=P) for e, P in zip(error, covariance)]
+        score = np.empty(len(error))
+        distinct, which = np.unique(covariance, axis=0, return_inverse=True)
+        for i, P in enumerate(distinct):  # as SciPy decomposes each of them once
+            score[which == i] = -stats.multivariate_normal.logpdf(error[which == i], cov=P)
+        self.log_score[self.there] = score
         for name, (first, end) in self.groups.items():
             block, e = covariance[:, first:end, first:end], error[:, first:end]
             self.put("nees", name, (e * np.linalg.solve(block, e[..., None])[..., 0]).sum(axis=1))
