@@ -16,7 +16,7 @@ namespace {
 
 /// A noise record of the shared data, or nothing where it is missing; the test then says so and succeeds.
 std::optional<NoiseRecord> shared_record(const std::string& name) {
-    const std::string path = std::string(CREDENCE_SHARED_DATA) + "/" + name;
+    const std::filesystem::path path = std::filesystem::path(CREDENCE_SHARED_DATA) / name;
     if (std::filesystem::exists(path)) return read_noise_record(path);
     WARN("SKIPPED: " << path << " is not there");
     return std::nullopt;
