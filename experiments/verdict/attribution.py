@@ -43,7 +43,8 @@ def study(random: np.random.Generator, trials: int, factor: float, mean: np.ndar
 
 
 def main(studies: int = 40) -> None:
-    print("errors,trials,studies,something too large,the right line,cannot be told apart,a wrong line")
+    print("| errors | trials | studies | something too large | the right line | cannot be told apart | a wrong line |")
+    print("|---|---|---|---|---|---|---|")
     for name, factor, mean, right in KINDS:
         for trials in COUNTS:
             said = []
@@ -52,8 +53,8 @@ def main(studies: int = 40) -> None:
                 said.append(found["attribution"]["carrier"] if found["attribution"] else "")
             large = [one for one in said if one]
             wrong = sum(one not in (right, "unknown") for one in large)
-            print(f'"{name}",{trials},{studies},{len(large)},{large.count(right)},{large.count("unknown")},{wrong}',
-                  flush=True)
+            cells = name, trials, studies, len(large), large.count(right), large.count("unknown"), wrong
+            print("| " + " | ".join(map(str, cells)) + " |", flush=True)
 
 
 if __name__ == "__main__":
