@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import re
+import inspect
 from typing import Any
 
 import griffe
+
+import credence
 
 
 class FieldsAsArguments(griffe.Extension):
     def on_package(self, *, pkg: griffe.Module, **_: Any) -> None:
         griffe.DataclassesExtension().on_package(pkg=pkg)
         asked = pkg["judging._Asked"].parameters
-        judge, record = pkg["judging.judge"], pkg["judging.Record"]
+        judge = pkg["judging.judge"]
         judge.parameters = griffe.Parameters(*(one for one in asked if one.name != "self"))
-        of_fields = record.docstring.value.partition("----------\n")[2].rstrip()
-        text = re.sub(r"(?m)^RECORD\n(?s:.+?)\n(?=runs )", lambda _: f"{of_fields}\n", judge.docstring.value)
-        judge.docstring.value = text
+        judge.docstring.value = inspect.getdoc(credence.judge)
