@@ -9,7 +9,7 @@ from common import Filter, Study, halved, in_world_frame, of_half_angles, withou
 
 INCREMENT = {"chart": "increment"}
 SIMULATED = {"noise": "simulated"}
-ONE_FACTOR = "P is too small by a factor of about"
+TOO_SMALL = "P is too small by a factor of about"
 TOO_LARGE = "P is too large by a factor of about"
 DIRECTIONS = "pessimistic (directions): all"
 DROPPED = "that they are not correlated"
@@ -24,7 +24,7 @@ def radar(kind: str) -> Study:
         Filter("as documented", "failed", {"kind": kind}),
         Filter("Q and R of the simulated radar", expected, {"kind": kind, **SIMULATED}, expected_short="optimistic"),
         Filter("and the truth drawn from P0", "consistent", drawn, trials=2000),
-        Filter("wrong: P halved", "optimistic", drawn, halved, ONE_FACTOR, trials=2000,
+        Filter("wrong: P halved", "optimistic", drawn, halved, TOO_SMALL, trials=2000,
                says_short="optimistic (NEES/dim): all 2"),
     ))
 
@@ -69,16 +69,16 @@ STUDIES = (
         Filter("variances of the simulated sensors", "failed", {"variances": "simulated"}),
         Filter("and slower motion", "consistent", {"variances": "simulated", "span": 0.5}),
         Filter("wrong: P of half the angle", "optimistic", {"variances": "simulated", "span": 0.5}, of_half_angles,
-               ONE_FACTOR),
+               TOO_SMALL),
     )),
     Study("filterpy", "manoeuvring target, IMM", "filterpy_imm", 2000, 400, (
         Filter("as documented, the truth changes modes as it is told", "consistent"),
-        Filter("wrong: P halved", "optimistic", {}, halved, ONE_FACTOR, says_short="optimistic (NEES/dim): all 2"),
+        Filter("wrong: P halved", "optimistic", {}, halved, TOO_SMALL, says_short="optimistic (NEES/dim): all 2"),
         Filter("the quiet mode alone, the truth as before", "failed", {"quiet": True}),
     )),
     Study("simdkalman", "level and trend", "simdkalman_series", 2000, 500, (
         Filter("as documented, filtered", "consistent"),
-        Filter("wrong: P halved", "optimistic", {}, halved, ONE_FACTOR, says_short="optimistic (NEES/dim): all 2"),
+        Filter("wrong: P halved", "optimistic", {}, halved, TOO_SMALL, says_short="optimistic (NEES/dim): all 2"),
         Filter("as documented, smoothed", "consistent", {"result": "smoothed"}),
         Filter("filtered, from a known state", "pessimistic", {"start": "known"}, expected_short="consistent"),
     ), batch=True),
