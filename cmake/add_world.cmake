@@ -35,7 +35,7 @@ function(credence_add_world program)
     string(APPEND includes "#include \"${header}\"\n")
   endforeach()
   # Settings are handed to the objects, so that matrices in them must be aligned alike.
-  target_compile_definitions(${program} PRIVATE EIGEN_MAX_STATIC_ALIGN_BYTES=16)
+  target_compile_definitions(${program} PRIVATE EIGEN_MAX_STATIC_ALIGN_BYTES=16 CREDENCE_HAS_TARGET_OBJECTS)
   foreach(name ${CREDENCE_TARGETS})
     set(own ${program}_${name})
     file(CONFIGURE OUTPUT ${own}.cpp CONTENT "${includes}" @ONLY)

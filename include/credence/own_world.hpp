@@ -47,6 +47,7 @@
 
 #include <concepts>
 #include <iterator>
+#include <stdexcept>
 #include <utility>
 
 namespace credence {
@@ -139,7 +140,10 @@ public:
                 return in_lanes;
 #endif
         }
-        return own_simulation(scenario, report, [own = settings.own](OwnTrial& trial) { run_one(own, trial); });
+        if constexpr (only_in_lanes<W>)
+            throw std::logic_error("world " + name() + ": credence_add_world was not given its header");
+        else
+            return own_simulation(scenario, report, [own = settings.own](OwnTrial& trial) { run_one(own, trial); });
     }
 
 private:

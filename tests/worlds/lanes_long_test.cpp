@@ -18,6 +18,18 @@
 
 namespace credence::test::lanes_long_test {
 
+/// One whose header names it, and which the program has no object for.
+struct Forgotten : Tracker {
+    static constexpr const char* name = "forgotten";
+};
+
+}  // namespace credence::test::lanes_long_test
+
+template <>
+inline constexpr bool credence::only_in_lanes<credence::test::lanes_long_test::Forgotten> = true;
+
+namespace credence::test::lanes_long_test {
+
 namespace {
 
 const bool added = [] {
@@ -26,6 +38,7 @@ const bool added = [] {
     add_own_world<WideOf<9>>();
     add_own_world<WideOf<48>>();
     add_own_world<WideOf<132>>();
+    add_own_world<Forgotten>();
     return true;
 }();
 
@@ -318,6 +331,11 @@ TEST_CASE("lanes: a trial that is run again has the bits of its batch, and the t
             }
         }
     }
+}
+
+TEST_CASE("lanes: a world that the program has no objects for is refused where it could only run in lanes") {
+    CHECK_THROWS_WITH(simulation_of(of_world("forgotten")),
+                      "world forgotten: credence_add_world was not given its header");
 }
 
 TEST_CASE("lanes: what a world does wrong is said in the same words as of one trial at a time") {

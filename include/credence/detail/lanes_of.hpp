@@ -1,12 +1,20 @@
 #pragma once
 // Module worlds: the objects of a program that run a user's own world in lanes, one for each target, and how the
 // program finds those that it has. credence_add_world compiles each with CREDENCE_TARGET_OBJECT, CREDENCE_TARGET and
-// CREDENCE_LANES.
+// CREDENCE_LANES, and the program with CREDENCE_HAS_TARGET_OBJECTS.
 
 #include <credence/detail/own_simulation.hpp>
 
 #include <memory>
 #include <vector>
+
+namespace credence {
+
+/// Whether the program has a world's objects, so that nothing else of it need be compiled.
+template <class World>
+inline constexpr bool only_in_lanes = false;
+
+}  // namespace credence
 
 #ifdef CREDENCE_TARGET_OBJECT
 
@@ -84,6 +92,12 @@ std::unique_ptr<const Simulation> lane_simulation(const Scenario& scenario, cons
 
 }  // namespace credence
 
+#ifdef CREDENCE_HAS_TARGET_OBJECTS
+#define CREDENCE_WORLD(World) \
+    template <>               \
+    inline constexpr bool credence::only_in_lanes<World> = true
+#else
 #define CREDENCE_WORLD(World) static_assert(true)
+#endif
 
 #endif
