@@ -321,7 +321,7 @@ def test_a_trial_is_drawn():
     drawn(studies.trajectory(), "path", ellipse="1-sigma", width=style.COLUMN)
 
 
-def test_a_trial_moves(tmp_path, monkeypatch):
+def test_a_trial_moves(tmp_path, monkeypatch, capsys):
     from PIL import Image
 
     study, trajectory = studies.two_scenarios(), studies.trajectory()
@@ -339,19 +339,14 @@ def test_a_trial_moves(tmp_path, monkeypatch):
     assert shown[-1] >= 1000
     for before, after in itertools.pairwise(frames):
         assert np.abs(before - after).sum() > 0
-    assert credence.animate(trajectory).name == "ekf-circle-ranged-greedy.ekf.gif"
-    again = credence.animate(trajectory, path=tmp_path / "again.gif")
-    assert again.read_bytes() == path.read_bytes()
-    refused("must end in", credence.animate, trajectory, path=tmp_path / "trial.png", raises=ValueError)
-
-
-def test_a_film_says_how_far_it_is(tmp_path, capsys):
-    credence.animate(studies.trajectory(), path=tmp_path / "trial.gif", progress=True)
-    said = capsys.readouterr().err
-    assert "trial.gif: 0 of 28 frames" in said
-    assert "trial.gif: 27 of 28 frames" in said
-    credence.animate(studies.trajectory(), path=tmp_path / "trial.gif")
     assert capsys.readouterr().err == ""  # not a terminal
+    again = credence.animate(trajectory, progress=True)
+    assert again.name == "ekf-circle-ranged-greedy.ekf.gif"
+    assert again.read_bytes() == path.read_bytes()
+    said = capsys.readouterr().err
+    assert "greedy.ekf.gif: 0 of 28 frames" in said
+    assert "greedy.ekf.gif: 27 of 28 frames" in said
+    refused("must end in", credence.animate, trajectory, path=tmp_path / "trial.png", raises=ValueError)
 
 
 @pytest.mark.parametrize(("words", "place"), [(["--kind", "animation"], "credence.pictures.animation.PillowWriter"),
