@@ -102,9 +102,8 @@ struct Tally {
     int scenarios = 0, steps = 0, planned = 0, different = 0, tied = 0, dearer = 0;
 };
 
-/// Compares, at every step of a pack of planned trials, what the chosen control costs with the least cost: over as many
-/// steps as the controller plans ahead, by brute force of controller.hpp's plain ones.
-template <class Real>
+/// Compares, at every step of a planned trial, what the chosen control costs with the least cost: over as many steps as
+/// the controller plans ahead, by brute force of controller.hpp's plain ones.
 class Comparison {
 public:
     Comparison(const ProblemView& view, Controller controller, Tally& tally)
@@ -116,53 +115,46 @@ public:
     template <class Layout, class Belief>
     void planned(int k, const Layout& layout, const Belief& belief) {
         costs_.clear();
-        choice_ = no_choice<Real>(view_.control);
-        each_sum(belief, layout, k, view_.steps_ahead(controller_, k), [&](const Command<Real>& command, Real sum) {
+        choice_ = no_choice<double>(view_.control);
+        each_sum(belief, layout, k, view_.steps_ahead(controller_, k), [&](const Command<double>& command, double sum) {
             costs_.push_back(sum);
             choice_.offer(command, sum);
         });
     }
 
-    void predicted(int, const auto&, const auto&, const Command<Real>& command, const auto&...) {
+    void predicted(int, const auto&, const auto&, const Command<double>& command, const auto&...) {
         const bool logarithm = scale_of(view_.control.criterion) == CostScale::logarithmic;
-        for (int lane = 0; lane < lanes<Real>; ++lane) {
-            double least = infinity, taken = infinity;
-            for (std::size_t i = 0; i < costs_.size(); ++i) {
-                const Control& candidate = view_.control.candidates[i];
-                const double cost = lane_of(costs_[i], lane);
-                least = std::min(least, cost);
-                if (candidate.turn == lane_of(command.turn, lane) &&
-                    candidate.move.x == lane_of(command.move.x, lane) &&
-                    candidate.move.y == lane_of(command.move.y, lane))
-                    taken = cost;
-            }
-            ++tally_.steps;
-            tally_.planned += !costs_.empty();
-            const auto differs = [&](const Real& a, const Real& b) { return lane_of(a, lane) != lane_of(b, lane); };
-            const bool different = least < infinity && (differs(choice_.command.turn, command.turn) ||
-                                                        differs(choice_.command.move.x, command.move.x) ||
-                                                        differs(choice_.command.move.y, command.move.y));
-            const auto beyond = [&](double share) { return taken - least > share * (logarithm ? 1 : std::abs(least)); };
-            tally_.different += different;
-            tally_.tied += different && !beyond(1e-12);
-            tally_.dearer += least < infinity && beyond(1e-9);
+        const auto chosen = [&](const auto& other) {
+            return other.turn == command.turn && other.move.x == command.move.x && other.move.y == command.move.y;
+        };
+        double least = infinity, taken = infinity;
+        for (std::size_t i = 0; i < costs_.size(); ++i) {
+            least = std::min(least, costs_[i]);
+            if (chosen(view_.control.candidates[i])) taken = costs_[i];
         }
+        ++tally_.steps;
+        tally_.planned += !costs_.empty();
+        const bool different = least < infinity && !chosen(choice_.command);
+        const auto beyond = [&](double share) { return taken - least > share * (logarithm ? 1 : std::abs(least)); };
+        tally_.different += different;
+        tally_.tied += different && !beyond(1e-12);
+        tally_.dearer += least < infinity && beyond(1e-9);
     }
 
 private:
     template <class Layout, class Belief>
     void each_sum(const Belief& belief, const Layout& layout, int k, int steps,
-                  const std::function<void(const Command<Real>&, Real)>& visit) {
+                  const std::function<void(const Command<double>&, double)>& visit) {
         const auto base = std::make_unique<Belief>(), next = std::make_unique<Belief>();
         prepare_candidates(belief, view_.filter, layout, k, *base);
         for (int i = 0; i < view_.control.candidate_count; ++i) {
-            const Command<Real> command = command_from<Real>(view_.control.candidates[i]);
-            Real sum = candidate_cost(*base, command, view_.control, view_.filter, view_.sensor, layout, *next);
+            const Command<double> command = command_from<double>(view_.control.candidates[i]);
+            double sum = candidate_cost(*base, command, view_.control, view_.filter, view_.sensor, layout, *next);
             if (steps > 1) {
-                Real least = without_limit<Real>();
+                double least = without_limit<double>();
                 each_sum(*next, layout, k + 1, steps - 1,
-                         [&](const Command<Real>&, Real rest) { least = smaller(rest, least); });
-                sum = sum + least;
+                         [&](const Command<double>&, double rest) { least = smaller(rest, least); });
+                sum += least;
             }
             visit(command, sum);
         }
@@ -171,57 +163,53 @@ private:
     const ProblemView& view_;
     Controller controller_;
     Tally& tally_;
-    std::vector<Real> costs_;
-    Choice<Real> choice_;
+    std::vector<double> costs_;
+    Choice<double> choice_;
 };
 
-/// One pack of trials.
-template <class Layout, class Real>
-void run_pack(const Problem& problem, Controller controller, Tally& tally) {
+template <class Layout>
+void run_layout(const Problem& problem, Controller controller, Tally& tally) {
     const ProblemView& view = problem.view();
-    const auto work = std::make_unique<Workspace<Layout, Real>>();
-    std::vector<Real> figures(static_cast<std::size_t>(view.series_count * (view.poses - 1)));
-    Real columns[column_count];
-    Comparison<Real> comparison(view, controller, tally);
-    const KeyedDraws<Real> draws(1, trials_from<Real>(0), view.world.truncate);
+    const auto work = std::make_unique<Workspace<Layout, double>>();
+    std::vector<double> figures(static_cast<std::size_t>(view.series_count * (view.poses - 1)));
+    double columns[column_count];
+    Comparison comparison(view, controller, tally);
+    const KeyedDraws<double> draws(1, trials_from<double>(0), view.world.truncate);
     run_trial(view, controller, draws, comparison, *work, columns, figures.data());
 }
 
-/// (Not each layout in each width, because each takes long to compile.)
-template <Process process, class Real>
-void run_layout(const Problem& problem, Controller controller, Tally& tally) {
-    if constexpr (lanes<Real> == 1)
-        if (problem.view().features == 1) return run_pack<Layout<process, 1>, Real>(problem, controller, tally);
-    if constexpr (lanes<Real> == 1 || lanes<Real> == 8)
-        if (problem.view().features == 3) return run_pack<Layout<process, 3>, Real>(problem, controller, tally);
-    run_pack<Layout<process, any_count>, Real>(problem, controller, tally);
+template <Process process>
+void run_process(const Problem& problem, Controller controller, Tally& tally) {
+    if (problem.view().features == 1) return run_layout<Layout<process, 1>>(problem, controller, tally);
+    if (problem.view().features == 3) return run_layout<Layout<process, 3>>(problem, controller, tally);
+    run_layout<Layout<process, any_count>>(problem, controller, tally);
 }
 
-template <class Real>
-void run_scenario(const Settings& settings, Tally& tally) {
+inline void run_scenario(const Settings& settings, Tally& tally) {
     const Problem problem(scenario_with(settings));
     const auto& arms = problem.scenario().arms.controllers;
     const Controller controller = arms == std::vector{Controller::horizon} ? Controller::horizon : Controller::greedy;
     ++tally.scenarios;
-    if (problem.view().process == Process::heading)
-        run_layout<Process::heading, Real>(problem, controller, tally);
-    else
-        run_layout<Process::translation, Real>(problem, controller, tally);
+    if (problem.view().process == Process::heading) run_process<Process::heading>(problem, controller, tally);
+    else run_process<Process::translation>(problem, controller, tally);
 }
 
-/// Runs so many random scenarios with further settings. Scenarios that contradict themselves are passed over: about one
-/// in seven.
-template <class Real>
-Tally run_random(unsigned count, const Settings& more = {}) {
-    Tally tally;
+/// Calls `run` with the settings of so many random scenarios and further ones. Scenarios that contradict themselves are
+/// passed over: about one in seven.
+inline void each_random(unsigned count, const Settings& more, const std::function<void(const Settings&)>& run) {
     for (unsigned seed = 0; seed < count; ++seed) {
         Settings settings = Lottery(seed).settings();
         settings.insert(settings.end(), more.begin(), more.end());
         try {
-            run_scenario<Real>(settings, tally);
+            run(settings);
         } catch (const InputError&) {
         }
     }
+}
+
+inline Tally run_random(unsigned count, const Settings& more = {}) {
+    Tally tally;
+    each_random(count, more, [&](const Settings& settings) { run_scenario(settings, tally); });
     return tally;
 }
 

@@ -128,6 +128,10 @@ bool same_bits(double a, double b);
 bool same_bits(const std::vector<double>& a, const std::vector<double>& b);
 bool same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
 
+/// The columns of three trials of a block, in lanes and of every target and arm, that have other bits than one trial at a
+/// time.
+std::vector<std::string> other_bits_in_lanes(const Problem& problem);
+
 /// Smallest eigenvalue of a symmetric matrix.
 double smallest_eigenvalue(const Eigen::MatrixXd& symmetric);
 

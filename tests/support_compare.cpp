@@ -2,6 +2,9 @@
 
 #include "support.hpp"
 
+#include <credence/detail/block.hpp>
+#include <credence/detail/trajectory.hpp>
+
 #include <credence/error.hpp>
 
 #include <algorithm>
@@ -80,6 +83,25 @@ bool same_bits(const std::vector<double>& a, const std::vector<double>& b) {
 bool same_bits(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
     return a.rows() == b.rows() && a.cols() == b.cols() &&
            std::equal(a.data(), a.data() + a.size(), b.data(), [](double x, double y) { return same_bits(x, y); });
+}
+
+std::vector<std::string> other_bits_in_lanes(const Problem& problem) {
+    constexpr int seed = 3, index = 21, trials = 13;
+    std::vector<std::string> others;
+    const std::vector<Target> targets = runnable_targets();
+    std::vector<Block> blocks;
+    for (const Target& target : targets) blocks.push_back(run_block(problem, seed, index, trials, target));
+    const std::vector<Arm> arms = arms_of(problem.scenario());
+    for (std::size_t a = 0; a < arms.size(); ++a)
+        for (const std::size_t trial : {0u, 6u, 12u}) {
+            const Trajectory one = replay_trial(problem, arms[a], seed, index * block_size + static_cast<int>(trial));
+            for (std::size_t t = 0; t < targets.size(); ++t)
+                for (std::size_t c = 0; c < column_count; ++c)
+                    if (!same_bits(blocks[t].arms[a].columns[c * trials + trial], one.column_values[c]))
+                        others.push_back(targets[t].name + ", " + arm_name(problem.scenario(), arms[a]) + ", trial " +
+                                         std::to_string(trial) + ": " + one.columns[c].name);
+        }
+    return others;
 }
 
 double smallest_eigenvalue(const Eigen::MatrixXd& symmetric) {

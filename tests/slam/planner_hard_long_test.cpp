@@ -30,25 +30,32 @@ bool may_tie(const Settings& settings) {
     return many != nullptr && settings.front() == Settings::value_type{"planner.criterion", "max_eigenvalue"};
 }
 
-template <class Real>
-void check_same(unsigned count, Settings more) {
-    CAPTURE(described(more), lanes<Real>);
-    const Tally tally = run_random<Real>(count, more);
-    CHECK(tally.different == (may_tie(more) ? tally.tied : 0));
+Tally check_random(unsigned count, const Settings& more = {}) {
+    CAPTURE(described(more));
+    const Tally tally = run_random(count, more);
     CHECK(tally.dearer == 0);
     CHECK(tally.scenarios > static_cast<int>(count * 3 / 4));
     CHECK(tally.steps > tally.scenarios);
     CHECK(tally.planned == tally.steps);
+    return tally;
 }
 
-template <class Real>
-void check_random(unsigned count, const Settings& more = {}) {
+void check_same(unsigned count, const Settings& more) {
     CAPTURE(described(more));
-    const Tally tally = run_random<Real>(count, more);
-    CHECK(tally.dearer == 0);
-    CHECK(tally.scenarios > static_cast<int>(count * 3 / 4));
-    CHECK(tally.steps > tally.scenarios);
-    CHECK(tally.planned == tally.steps);
+    const Tally tally = check_random(count, more);
+    CHECK(tally.different == (may_tie(more) ? tally.tied : 0));
+}
+
+/// The targets' lanes plan as one trial at a time does.
+void check_lanes(unsigned count, const Settings& more) {
+    unsigned scenarios = 0;
+    each_random(count, more, [&](const Settings& settings) {
+        const Problem problem(scenario_with(settings));
+        CAPTURE(described(settings));
+        CHECK(other_bits_in_lanes(problem) == std::vector<std::string>{});
+        ++scenarios;
+    });
+    CHECK(scenarios >= count * 3 / 4);
 }
 
 }  // namespace
@@ -56,43 +63,27 @@ void check_random(unsigned count, const Settings& more = {}) {
 TEST_CASE("planner: no control costs more than the least, on eight features and a robot that loses itself") {
     Tally tally;
     for (const char* process : {"heading", "translation"})
-        run_scenario<Lane<8>>({{"model.process", process},
-                               {"features.positions",
-                                "1 0, 0.7 0.7, 0 1, -0.7 0.7, -1 0, -0.7 -0.7, 0 -1, 0.7 -0.7"},
-                               {"features.path", "circle"},
-                               {"scenario.poses", "30"},
-                               {"noise.odometry", "1"},
-                               {"noise.walk", "0.01"},
-                               {"noise.deformation", "0.01"}},
-                              tally);
-    CHECK(tally.steps == 2 * 8 * 29);
+        run_scenario({{"model.process", process},
+                      {"features.positions", "1 0, 0.7 0.7, 0 1, -0.7 0.7, -1 0, -0.7 -0.7, 0 -1, 0.7 -0.7"},
+                      {"features.path", "circle"},
+                      {"scenario.poses", "30"},
+                      {"noise.odometry", "1"},
+                      {"noise.walk", "0.01"},
+                      {"noise.deformation", "0.01"}},
+                     tally);
+    CHECK(tally.steps == 2 * 29);
     CHECK(tally.dearer == 0);
 }
 
-TEST_CASE("planner: no control costs more than the least, on 1,500 random hard scenarios") {
-    check_random<double>(1500);
-}
-
-TEST_CASE("planner: no control costs more than the least, on 100 random hard scenarios in every lane width") {
-    check_random<Lane<4>>(100);
-    check_random<Lane<8>>(100);
-}
+TEST_CASE("planner: no control costs more than the least, on 1,500 random hard scenarios") { check_random(1500); }
 
 TEST_CASE("planner: by every criterion no control costs more than the least, on 300 random hard scenarios") {
-    for (const Settings& criterion : criteria()) check_random<double>(300, with_poses(criterion, "4"));
+    for (const Settings& criterion : criteria()) check_random(300, with_poses(criterion, "4"));
 }
 
-TEST_CASE("planner: by every criterion no control costs more than the least, on 10 random hard scenarios in lanes") {
-    for (const Settings& criterion : criteria()) check_random<Lane<8>>(10, criterion);
-}
-
-TEST_CASE("planner: by every criterion that is no trace the control is the plain form's, in every lane width") {
-    for (const Settings& all_steps : without_trace) {
-        const Settings criterion = many != nullptr ? with_poses(all_steps, "4") : all_steps;
-        check_same<double>(hard_scenarios(40), criterion);
-        check_same<Lane<4>>(hard_scenarios(10), criterion);
-        check_same<Lane<8>>(hard_scenarios(10), criterion);
-    }
+TEST_CASE("planner: by every criterion that is no trace the control is the plain form's") {
+    for (const Settings& criterion : without_trace)
+        check_same(hard_scenarios(40), many != nullptr ? with_poses(criterion, "4") : criterion);
 }
 
 TEST_CASE("planner: by every criterion that is no trace, two and three steps ahead, the control is brute force's") {
@@ -101,9 +92,17 @@ TEST_CASE("planner: by every criterion that is no trace, two and three steps ahe
             Settings ahead = with_poses(criterion, "5");
             ahead.insert(ahead.end(), {{"arms.controllers", "horizon"}, {"planner.horizon", steps},
                                        {"planner.speeds", "1"}});
-            check_same<double>(hard_scenarios(20) / 10, ahead);
-            check_same<Lane<8>>(hard_scenarios(10) / 10, ahead);
+            check_same(hard_scenarios(20) / 10, ahead);
+            check_lanes(hard_scenarios(20) / 10, ahead);
         }
+}
+
+TEST_CASE("planner: in lanes the same bits as one trial at a time, by every criterion, on random hard scenarios") {
+    check_lanes(hard_scenarios(60), {{"arms.controllers", "greedy"}});
+    for (Settings criterion : criteria()) {
+        criterion.push_back({"arms.controllers", "greedy"});
+        check_lanes(hard_scenarios(20), criterion);
+    }
 }
 
 }  // namespace credence::test::planner_hard_long_test
