@@ -4,7 +4,6 @@
 
 #include <credence/detail/block.hpp>
 #include <credence/detail/trajectory.hpp>
-
 #include <credence/error.hpp>
 
 #include <algorithm>

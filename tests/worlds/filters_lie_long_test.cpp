@@ -175,8 +175,8 @@ std::vector<Real> all_of(const std::vector<typename Group<double>::Tangent>& xi)
 
 template <template <class> class Group>
 void check_bits(const std::vector<typename Group<double>::Tangent>& xi) {
-    const auto in_lanes = all_of<Group, Lane<4>>(xi);
-    for (int lane = 0; lane < 4; ++lane) {
+    const auto in_lanes = all_of<Group, Lane<8>>(xi);
+    for (int lane = 0; lane < 8; ++lane) {
         const auto one = all_of<Group, Lane<1>>({xi[static_cast<std::size_t>(lane)]});
         for (std::size_t i = 0; i < one.size(); ++i) REQUIRE(lane_of(in_lanes[i], lane) == lane_of(one[i], 0));
         const auto plain = all_of<Group, double>({xi[static_cast<std::size_t>(lane)]});
@@ -208,8 +208,8 @@ void check_group(unsigned seed) {
                          matrix_of(G::exp(typename G::Tangent(X.adjoint() * other)) * X)) < 1e-13);
         REQUIRE(distance(matrix_of(X.inverse() * X), matrix_of(G())) < 1e-14);
     }
-    for (int sample = 0; sample < 80; ++sample) {
-        std::vector<typename G::Tangent> xi(4);
+    for (int sample = 0; sample < 40; ++sample) {
+        std::vector<typename G::Tangent> xi(8);
         for (auto& one : xi) one = drawn<G>(random);
         check_bits<Group>(xi);
     }
