@@ -13,4 +13,4 @@ bash tests/digest/check.sh build-clang/tests/digest/credence_digest
 cmake --preset digest-aarch64 >/dev/null
 cmake --build --preset digest-aarch64 --target credence_digest -j "$(nproc)" | tail -n 1
 bash tests/digest/check.sh qemu-aarch64 build-digest-aarch64/tests/digest/credence_digest
-bash tests/labels/gallery.sh clang++
+bash tests/labels/gallery.sh c++ clang++
