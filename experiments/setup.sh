@@ -91,9 +91,6 @@ configure_and_build() {
   # make waits for a library before it compiles what links it, which takes a fifth of the time on two cores.
   local generator=()
   [ -f "$directory/CMakeCache.txt" ] || generator=(-G Ninja)
-  # A sixth of the time is the target for AVX-512: it is built where this processor runs it.
-  local v4=ON
-  if [ -r /proc/cpuinfo ] && ! grep -qw avx512dq /proc/cpuinfo; then v4=OFF; fi
-  cmake -S . -B "$directory" "${generator[@]}" -DCMAKE_UNITY_BUILD=ON -DCREDENCE_TARGET_V4=$v4 "$@" &&
+  cmake -S . -B "$directory" "${generator[@]}" -DCMAKE_UNITY_BUILD=ON "$@" &&
     cmake --build "$directory" --target "$target" -j "$(nproc)"
 }

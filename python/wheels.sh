@@ -88,7 +88,7 @@ for library in "$work"/sources/hdf5-*/debian \
 done >"$licences"
 
 # scikit-build-core hands CMAKE_ARGS on to CMake.
-CMAKE_ARGS+=" -DHDF5_ROOT=$prefix -DHDF5_USE_STATIC_LIBRARIES=ON -DCREDENCE_LICENCES=$licences"
+CMAKE_ARGS+=" -DHDF5_ROOT=$prefix -DHDF5_USE_STATIC_LIBRARIES=ON -DCREDENCE_LICENCES=$licences -DCREDENCE_TARGET_V4=ON"
 rm -rf "$work/built"
 python -m pip wheel --disable-pip-version-check . --no-deps --no-build-isolation -w "$work/built" \
   --config-settings=build-dir="$work/$machine/build" >"$work/build.log" 2>&1 ||
