@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # shelf.sh [LABEL...]: the labels that CI leaves out, or these, since all together take more than 40 minutes: docs, whose
 # slow pages take minutes; compilers and digest, the committed digest from clang, from g++ on aarch64, in lanes of any
-# width and on older processors, and clang's gallery; sanitizers, which compiles the tree once more; and contributing,
+# width and on older processors, and the gallery by both; sanitizers, which compiles the tree once more; and contributing,
 # which builds it with the diffs of CONTRIBUTING.md. To be run before a release, after tests/run.sh; when each last ran,
 # and what came of it, is kept in tests/shelf.txt, which CI shows.
 set -euo pipefail
