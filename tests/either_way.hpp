@@ -50,16 +50,19 @@ inline void fail_trials(ScenarioResults& results, std::size_t arm, std::size_t f
     }
 }
 
-/// `make` gives a report of a study.
+/// `make` gives a report of a study; `stored` is the study read back.
 template <class Make>
-auto either_way(const Study& study, const Make& make) {
-    const auto in_memory = make(study), read = make(read_back(study));
+auto either_way(const Study& study, const Study& stored, const Make& make) {
+    const auto in_memory = make(study), read = make(stored);
     CHECK(renderings(read) == renderings(in_memory));
     return read;
 }
 
+inline Report report_either_way(const Study& study, const Study& stored, const Limits& limits) {
+    return either_way(study, stored, [&](const Study& either) { return make_report(either, limits); });
+}
 inline Report report_either_way(const Study& study, const Limits& limits) {
-    return either_way(study, [&](const Study& either) { return make_report(either, limits); });
+    return report_either_way(study, read_back(study), limits);
 }
 
 /// Of the first arm of a scenario that was run.
@@ -68,9 +71,9 @@ inline Evidence evidence_either_way(const ScenarioResults& results) {
     study.trials = results.trials;
     study.complete = true;
     study.scenarios = {results};
-    report_either_way(study, {});
-    study = read_back(study);
-    const WithTotals read(study.scenarios.front());
+    const Study stored = read_back(study);
+    report_either_way(study, stored, {});
+    const WithTotals read(stored.scenarios.front());
     return evidence_of(*read, (*read).arms.front());
 }
 

@@ -99,7 +99,7 @@ void check_renderings(const Study& study, bool is_stored = true) {
             for (const Reason& reason : reasons_of(arm)) CHECK(first_with_nan(reason_text(reason)) == "");
     }
     const auto compare = [](const Study& either) { return compare_studies({{"r.h5", either}}, std::nullopt); };
-    const CompareReport compared = is_stored ? either_way(study, compare) : compare(study);
+    const CompareReport compared = is_stored ? either_way(study, read_back(study), compare) : compare(study);
     for (const auto& text : {compare_text(compared), compare_json(compared), compare_csv(compared),
                              without_scenario(compare_html(compared, "test"))})
         CHECK(first_with_nan(text) == "");

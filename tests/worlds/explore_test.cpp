@@ -281,12 +281,12 @@ TEST_CASE("explore: the control chosen is the least of the costs, at hard parame
                 Watcher watcher{{}, view};
                 double columns[explore_column_count];
                 std::vector<double> figures(static_cast<std::size_t>(view.series_count * (view.poses - 1)));
-                for (std::uint64_t trial = 0; trial < 20; ++trial)
+                for (std::uint64_t trial = 0; trial < 50; ++trial)
                     run_trial(view, Explorer::greedy, KeyedDraws<double>(3, trial, infinity), watcher, *work, columns,
                               figures.data());
                 planned += watcher.planned;
             }
-    CHECK(planned > 40000);
+    CHECK(planned > 100000);
 }
 
 }  // namespace credence::test::explore_test
